@@ -1,0 +1,91 @@
+//! Participating media: what fills the scene, how it attenuates light, and how it scatters it.
+//!
+//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo and a
+//! phase [`Phase`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
+//! pays nothing for grids.
+
+mod bounds;
+pub mod grid;
+mod homogeneous;
+mod phase;
+mod profile;
+pub mod vdb;
+
+pub use bounds::{Bounds, Parallelepiped};
+pub use grid::GridExtinction;
+pub use homogeneous::{ChromaticExtinction, UniformExtinction};
+pub use phase::Phase;
+pub use profile::{ProfileKnot, RayProfile};
+
+use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span};
+
+/// The medium of a scene.
+#[derive(Debug)]
+pub struct Medium {
+    /// Where the medium is; outside it there is nothing.
+    pub bounds: Bounds,
+    /// How strongly it attenuates.
+    pub extinction: MediumExtinction,
+    /// sigma_s / sigma_t per channel, in \[0, 1\].
+    pub albedo: Rgb,
+    /// Where scattered light goes.
+    pub phase: Phase,
+}
+
+/// The kinds of extinction a scene may hold. Match once, outside the loops, and go on with the one found.
+#[derive(Debug)]
+pub enum MediumExtinction {
+    /// One sigma_t for all channels.
+    Uniform(UniformExtinction),
+    /// One sigma_t a channel.
+    Chromatic(ChromaticExtinction),
+    /// sigma_t = density_scale * density, from a VDB grid.
+    Grid(Box<GridExtinction>),
+}
+
+/// How strongly a medium attenuates light along rays. `Span`s passed in lie inside the medium's bounds.
+pub trait Extinction: Sync {
+    /// Whether sigma_t is the same at every place of the bounds: then no photon needs its own.
+    const IS_UNIFORM: bool;
+
+    /// sigma_t at a point \[1/m\]; 0 outside a grid's bounds. A uniform extinction does not look at the point.
+    fn sigma_t(&self, position: DVec3) -> Rgb;
+
+    /// Integral of sigma_t over the span, exact up to rounding.
+    fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb;
+
+    /// Draws the next collision of a photon of the given power: analytic in uniform media, delta
+    /// tracking with local majorants in grids.
+    fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight;
+
+    /// The collision at quantile `u` in \[0, 1) of the free-flight distribution, by exact inversion: keeps
+    /// the strata of `u` intact.
+    fn invert_flight(&self, ray: &Ray, span: Span, power: Rgb, u: f64) -> Flight;
+
+    /// Fills `profile` with the optical depth along the span, as a function of distance.
+    fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile);
+
+    /// Integral over the ball of min(sigma_t, `ceiling`), for the normalisation of kernels, where
+    /// nothing lies outside `bounds`. `phase` in \[0, 1) turns the quadrature points of grids.
+    fn ball_extinction(&self, bounds: &Bounds, ball: Ball, ceiling: f64, phase: f64) -> f64;
+}
+
+/// The end of a photon's flight.
+///
+/// `weight` multiplies the photon's power. It is 1 where all channels share one sigma_t; otherwise it
+/// corrects each channel for having been sampled with the mixture of all (mean 1 over both outcomes).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Flight {
+    /// It collided with the medium at this distance along the ray.
+    Collision {
+        /// Distance along the ray \[m\].
+        distance: f64,
+        /// Factor on the photon's power.
+        weight: Rgb,
+    },
+    /// It reached the end of the span.
+    Escape {
+        /// Factor on the photon's power.
+        weight: Rgb,
+    },
+}

@@ -1,0 +1,33 @@
+//! The plain form of a grid as read from a file: leaves, tiles and a background.
+
+use crate::math::DAffine3;
+
+/// A sparse grid of values at integer index coordinates, background elsewhere.
+#[derive(Clone, Debug)]
+pub struct SparseGrid<T> {
+    /// Value of everything not covered by a leaf or a tile.
+    pub background: T,
+    /// Index to world: column-vector convention, `world = index_to_world * index`.
+    pub index_to_world: DAffine3,
+    /// Origins of the 8^3 leaves, multiples of 8.
+    pub leaves: Vec<[i32; 3]>,
+    /// Active voxels of each leaf; voxel offset (x << 6) | (y << 3) | z is bit `offset & 63` of word `offset >> 6`.
+    pub masks: Vec<[u64; 8]>,
+    /// All 512 values of each leaf, inactive ones included, in voxel-offset order.
+    pub values: Vec<T>,
+    /// Constant cubes above the leaves, active or inactive with a value other than the background.
+    pub tiles: Vec<Tile<T>>,
+}
+
+/// A constant cube of voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tile<T> {
+    /// Lowest voxel, a multiple of `dim`.
+    pub origin: [i32; 3],
+    /// Edge in voxels: 8, 128 or 4096.
+    pub dim: u32,
+    /// Value of all its voxels.
+    pub value: T,
+    /// Whether the tile is active.
+    pub active: bool,
+}
