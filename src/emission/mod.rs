@@ -1,5 +1,8 @@
 //! Emission: from lights to photons on their way.
 
+pub mod aim;
+mod sobol;
+mod strata;
 /// How photons are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmissionKind {

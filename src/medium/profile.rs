@@ -24,3 +24,12 @@ pub struct ProfileKnot {
     /// sigma_t at the piece's start, middle and end \[1/m\].
     pub sigma_t: [f64; 3],
 }
+
+impl RayProfile {
+    /// placeholder until merge
+    pub fn set_uniform(&mut self, span: Span, sigma_t: Rgb) {
+        self.span = Some(span);
+        self.uniform = sigma_t;
+        self.knots.clear();
+    }
+}
