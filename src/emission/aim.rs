@@ -90,7 +90,9 @@ impl DirectionAim {
         match self {
             Self::All => 4.0 * PI,
             Self::Cone { versine, .. } => cap_solid_angle(*versine),
-            Self::Triangles { solid_angle, .. } | Self::FarFaces { solid_angle, .. } => *solid_angle,
+            Self::Triangles { solid_angle, .. } | Self::FarFaces { solid_angle, .. } => {
+                *solid_angle
+            }
         }
     }
 
@@ -180,10 +182,7 @@ impl OutlineAim {
         match self {
             Self::Disc { frame, center, radius } => {
                 let disc = square_to_disc(u) * *radius;
-                Some(AimedPlace {
-                    position: *center + frame.to_world(disc.extend(0.0)),
-                    area,
-                })
+                Some(AimedPlace { position: *center + frame.to_world(disc.extend(0.0)), area })
             }
             Self::Faces(faces) => {
                 faces.sample_place(u).map(|place| AimedPlace { position: place.position, area })
@@ -254,11 +253,12 @@ mod tests {
     #[test]
     fn aimed_directions_all_hit_and_cover_the_solid_angle() {
         for bounds in [BOX, BALL] {
-            for eye in [DVec3::new(3.0, 0.4, 0.1), DVec3::new(-4.0, 5.0, 6.0), DVec3::new(0.0, 0.0, 9.0)] {
+            for eye in
+                [DVec3::new(3.0, 0.4, 0.1), DVec3::new(-4.0, 5.0, 6.0), DVec3::new(0.0, 0.0, 9.0)]
+            {
                 let aim = DirectionAim::new(eye, &bounds);
-                let hits = grid(1000).filter(|&u| {
-                    bounds.intersect(&Ray::new(eye, square_to_sphere(u))).is_some()
-                });
+                let hits = grid(1000)
+                    .filter(|&u| bounds.intersect(&Ray::new(eye, square_to_sphere(u))).is_some());
                 let by_counting = hits.count() as f64 / 1e6 * 4.0 * PI;
                 let ratio = aim.solid_angle() / by_counting;
                 assert!((ratio - 1.0).abs() < 1e-2, "{bounds:?} from {eye}: {ratio}");
@@ -283,9 +283,9 @@ mod tests {
             let outline = OutlineAim::new(direction, &BOX).unwrap().area();
             let ratio = mean * eye.length_squared() / outline;
             assert!((ratio - 1.0).abs() < 1e-2 + 3.0 / scale, "{scale}: {ratio}");
-            let hits = samples.iter().filter(|s| {
-                scale > 1e8 || BOX.intersect(&Ray::new(eye, s.direction)).is_some()
-            });
+            let hits = samples
+                .iter()
+                .filter(|s| scale > 1e8 || BOX.intersect(&Ray::new(eye, s.direction)).is_some());
             assert_eq!(hits.count(), samples.len());
         }
     }

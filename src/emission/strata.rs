@@ -74,10 +74,9 @@ fn division_counts(count: f64, extents: &[f64]) -> Vec<f64> {
         }
         let open = || extents.iter().zip(&fixed).filter(|(_, f)| !**f).map(|(e, _)| e.ln());
         let unit = ((count.ln() - open().sum::<f64>()) / free as f64).exp();
-        let too_coarse =
-            (0..extents.len()).filter(|&d| !fixed[d] && extents[d] * unit < 1.0).min_by(|&a, &b| {
-                extents[a].total_cmp(&extents[b])
-            });
+        let too_coarse = (0..extents.len())
+            .filter(|&d| !fixed[d] && extents[d] * unit < 1.0)
+            .min_by(|&a, &b| extents[a].total_cmp(&extents[b]));
         match too_coarse {
             Some(dimension) => fixed[dimension] = true,
             None => {

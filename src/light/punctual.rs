@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::light::Illumination;
-use crate::math::square_maps::versine;
+use crate::math::square_maps::{versine, versine_angle};
 use crate::math::{DVec3, Rgb};
 
 /// A point that radiates the same in all directions.
@@ -80,7 +80,7 @@ impl SpotLight {
         let width = (outer - inner) / f64::from(steps);
         let ring = |i: i32| {
             let down = inner + (f64::from(i) + 0.5) * width;
-            self.falloff(2.0 * (0.5 * down).sqrt().min(1.0).asin())
+            self.falloff(versine_angle(down))
         };
         let falling: f64 = (0..steps).map(ring).sum::<f64>() * width;
         2.0 * PI * (inner + falling)

@@ -53,6 +53,11 @@ pub fn versine(angle: f64) -> f64 {
     2.0 * half * half
 }
 
+/// The angle whose 1 - cos is given.
+pub fn versine_angle(versine: f64) -> f64 {
+    2.0 * (0.5 * versine).sqrt().min(1.0).asin()
+}
+
 /// The solid angle of a cap \[sr\].
 pub fn cap_solid_angle(versine: f64) -> f64 {
     2.0 * PI * versine
