@@ -29,10 +29,10 @@ pub enum Bounds {
 /// The points `corner + a edges[0] + b edges[1] + c edges[2]` with a, b, c in \[0, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parallelepiped {
-    /// One corner \[m\].
-    pub corner: DVec3,
-    /// The three edges that leave it \[m\], linearly independent.
-    pub edges: [DVec3; 3],
+    corner: DVec3,
+    edges: [DVec3; 3],
+    /// From offsets to (a, b, c).
+    inverse: DMat3,
 }
 
 impl Bounds {
@@ -43,9 +43,8 @@ impl Bounds {
             Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max)?.intersect(ahead),
             Self::Sphere { center, radius } => sphere_chord(ray, center, radius)?.intersect(ahead),
             Self::Parallelepiped(shape) => {
-                let inverse = shape.matrix().inverse();
-                let origin = inverse * (ray.origin - shape.corner);
-                let direction = inverse * ray.direction;
+                let origin = shape.inverse * (ray.origin - shape.corner);
+                let direction = shape.inverse * ray.direction;
                 slabs(origin, direction, DVec3::ZERO, DVec3::ONE)?.intersect(ahead)
             }
             Self::Infinite => Some(ahead),
@@ -58,7 +57,7 @@ impl Bounds {
             Self::Box { min, max } => point.cmpge(min).all() && point.cmple(max).all(),
             Self::Sphere { center, radius } => point.distance_squared(center) <= radius * radius,
             Self::Parallelepiped(shape) => {
-                let local = shape.matrix().inverse() * (point - shape.corner);
+                let local = shape.inverse * (point - shape.corner);
                 local.cmpge(DVec3::ZERO).all() && local.cmple(DVec3::ONE).all()
             }
             Self::Infinite => true,
@@ -88,7 +87,7 @@ impl Bounds {
             Self::Box { min, max } => {
                 let size = max - min;
                 let edges = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
-                Some(Parallelepiped { corner: min, edges })
+                Some(Parallelepiped::new(min, edges))
             }
             Self::Parallelepiped(shape) => Some(shape),
             Self::Sphere { .. } | Self::Infinite => None,
@@ -107,14 +106,15 @@ impl Bounds {
 }
 
 impl Parallelepiped {
-    /// Edges as columns.
-    pub fn matrix(&self) -> DMat3 {
-        DMat3::from_cols(self.edges[0], self.edges[1], self.edges[2])
+    /// The parallelepiped with one corner and the three edges that leave it \[m\], linearly independent.
+    pub fn new(corner: DVec3, edges: [DVec3; 3]) -> Self {
+        let inverse = DMat3::from_cols(edges[0], edges[1], edges[2]).inverse();
+        Self { corner, edges, inverse }
     }
 
-    /// The six faces as (corner, edge, edge, unit outward normal).
+    /// The six faces.
     pub fn faces(&self) -> [Face; 6] {
-        let handedness = self.matrix().determinant().signum();
+        let handedness = self.edges[0].cross(self.edges[1]).dot(self.edges[2]).signum();
         std::array::from_fn(|i| {
             let axis = i / 2;
             let (u, v) = (self.edges[(axis + 1) % 3], self.edges[(axis + 2) % 3]);
@@ -198,14 +198,9 @@ mod tests {
 
     #[test]
     fn a_sheared_box_agrees_with_its_faces() {
-        let shape = Parallelepiped {
-            corner: DVec3::new(1.0, 2.0, 3.0),
-            edges: [
-                DVec3::new(2.0, 0.1, 0.0),
-                DVec3::new(0.5, -1.0, 0.2),
-                DVec3::new(0.0, 0.3, 1.5),
-            ],
-        };
+        let edges =
+            [DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.5, -1.0, 0.2), DVec3::new(0.0, 0.3, 1.5)];
+        let shape = Parallelepiped::new(DVec3::new(1.0, 2.0, 3.0), edges);
         let bounds = Bounds::Parallelepiped(shape);
         let faces = shape.faces();
         let closed: DVec3 = faces.iter().map(|f| f.area_normal).sum();

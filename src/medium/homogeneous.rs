@@ -55,7 +55,7 @@ impl Extinction for UniformExtinction {
         _ceiling: f64,
         _turn: f64,
     ) -> BallIntegral {
-        bounds.overlap(ball).scaled(self.sigma_t)
+        bounds.overlap(ball)
     }
 }
 
@@ -110,7 +110,7 @@ impl Extinction for ChromaticExtinction {
         _ceiling: f64,
         _turn: f64,
     ) -> BallIntegral {
-        bounds.overlap(ball).scaled(self.sigma_t.max_element())
+        bounds.overlap(ball)
     }
 }
 

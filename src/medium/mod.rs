@@ -68,9 +68,9 @@ pub trait Extinction: Sync {
     /// Fills `profile` with the optical depth along the span, as a function of distance.
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile);
 
-    /// Integrals over the ball of min(sigma_t, `ceiling`) (a uniform extinction ignores the ceiling; a
-    /// chromatic one takes its largest channel), for the normalisation of kernels; nothing lies outside
-    /// `bounds`. `turn` in \[0, 1) turns the quadrature points of grids.
+    /// Integrals over the ball of min(sigma_t / `ceiling`, 1), for the normalisation of kernels: in a uniform
+    /// medium the volume inside `bounds`, whatever the ceiling. `turn` in \[0, 1) turns the quadrature
+    /// points of grids.
     fn ball_integral(&self, bounds: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral;
 }
 
