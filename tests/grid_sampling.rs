@@ -7,7 +7,7 @@ use photonvdb::{
     math::DVec3,
     medium::{grid::DensityGrid, vdb::SparseGrid},
 };
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::RngSeed};
 
 fn assert_same(voxels: &Voxels, grid: &DensityGrid, point: DVec3) {
     let bounds = grid.render_bounds().unwrap();
@@ -107,7 +107,12 @@ fn check(voxels: &Voxels, points: &[[f64; 3]]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 150,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(0),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn dense_grids_sample_as_written(

@@ -40,7 +40,8 @@ impl GridExtinction {
     /// make the largest sigma_t infinite is lowered.
     pub fn new(grid: DensityGrid, index_to_world: DAffine3, density_scale: f64) -> Self {
         let max_density = f64::from(grid.statistics().max_density);
-        let density_scale = density_scale.min(f64::MAX / max_density.max(1.0));
+        // NaN becomes 0.
+        let density_scale = density_scale.max(0.0).min(f64::MAX / max_density.max(1.0));
         let placement = match density_scale > 0.0 && !grid.is_empty() {
             true => Placement::new(&grid, &index_to_world),
             false => None,
