@@ -1,6 +1,33 @@
 //! The film: layers of an image, and their files.
+//!
+//! A [`Film`] holds what a render measures: per pixel the radiance by origin, the transmittance, and how
+//! the estimate was made. [`write_exr`] stores it in linear 32-bit floats with the settings that repeat
+//! the render, [`write_preview_png`] makes a tone-mapped picture for a quick look, [`read_rgb`] reads
+//! any ordinary EXR back, and [`compare`] measures two images against each other.
 
-use crate::math::Rgb;
+mod beside;
+mod compare;
+mod error;
+mod exr_description;
+mod exr_read;
+mod exr_write;
+mod layers;
+mod metadata;
+mod preview;
+mod rgb_image;
+
+pub use beside::{check_writable, write_beside};
+pub use compare::{ImageError, compare};
+pub use error::FilmError;
+pub use exr_description::{ExrDescription, ExrPart, describe_exr};
+pub use exr_read::{MAX_PIXEL_COUNT, read_rgb};
+pub use exr_write::write_exr;
+pub use layers::ExtraLayers;
+pub use metadata::RenderMetadata;
+pub use preview::write_preview_png;
+pub use rgb_image::RgbImage;
+
+use crate::math::{Rgb, mean_channel};
 
 /// The layers of one image, one value a pixel, row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +38,13 @@ pub struct Film {
     pub height: usize,
     /// Row-major pixels.
     pub pixels: Vec<Pixel>,
+}
+
+impl Film {
+    /// A black film of `width` x `height` pixels.
+    pub fn new(width: usize, height: usize) -> Self {
+        Self { width, height, pixels: vec![Pixel::default(); width * height] }
+    }
 }
 
 /// All layers of one pixel. Radiance is their sum: single + multiple scattering + emission.
@@ -28,4 +62,16 @@ pub struct Pixel {
     pub photon_count: f64,
     /// Mean kernel radius of the queries \[m\].
     pub kernel_radius: f64,
+}
+
+impl Pixel {
+    /// All light that reaches the pixel \[W/(m^2 sr)\]: single + multiple scattering + emission.
+    pub fn radiance(&self) -> Rgb {
+        self.single_scatter + self.multiple_scatter + self.emission
+    }
+
+    /// Coverage by the medium: 1 - mean transmittance of the channels.
+    pub fn alpha(&self) -> f64 {
+        1.0 - mean_channel(self.transmittance)
+    }
 }

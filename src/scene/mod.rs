@@ -1,10 +1,36 @@
 //! The scene: what the file says, checked and made ready.
+//!
+//! ```text
+//! .toml / .json ──tree──▶ values with their lines ──file──▶ SceneFile ──build──▶ Scene ──plan──▶ Plan
+//! ```
+//! [`SceneFile`] holds every key with its default filled in; its documentation is the manual of the format.
+//! [`Scene`] has opened the files it names, too, and nothing in it can be out of range.
+
+mod build;
+mod environment;
+mod error;
+mod file;
+mod hash;
+mod overrides;
+mod plan;
+mod tree;
+mod volume;
+
+pub use error::SceneError;
+pub use file::{
+    BoundsSection, CameraSection, EstimateSettings, LightSection, MediumSection, PhaseSection,
+    PhotonSettings, RenderSettings, SceneFile, TransformSection,
+};
+pub use overrides::Overrides;
+pub use plan::{LightCounts, MediumKind, Plan};
+pub use tree::Origin;
+
+use std::path::Path;
 
 use crate::camera::Camera;
-use crate::emission::EmissionKind;
-use crate::estimate::{Divisor, Kernel};
 use crate::light::Light;
 use crate::medium::Medium;
+use error::Problem;
 
 /// A validated scene. Nothing in it can be out of range.
 #[derive(Debug)]
@@ -21,43 +47,48 @@ pub struct Scene {
     pub estimate: EstimateSettings,
     /// How pixels are sampled.
     pub render: RenderSettings,
+    /// Of all values above, including the content of files they came from: equal for scenes that give the same
+    /// image, however their files are written.
+    pub hash: u64,
+    /// What was mended on loading, one sentence each.
+    pub warnings: Vec<String>,
 }
 
-/// `[photons]`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PhotonSettings {
-    /// Photons emitted per pass.
-    pub count: u64,
-    /// How they are sampled.
-    pub emission: EmissionKind,
-    /// Seed of every random number.
-    pub seed: u64,
-    /// Scatterings a photon is followed through; what is cut is counted.
-    pub max_order: u32,
-}
+impl Scene {
+    /// Loads a scene file (`.toml` or `.json`) and the files it names.
+    ///
+    /// # Errors
+    /// The first thing wrong, as one sentence that names the file, the line (TOML) and the key.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::load_with(path, &Overrides::default())
+    }
 
-/// `[estimate]`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EstimateSettings {
-    /// Photons of one estimate.
-    pub k: usize,
-    /// Numerator of the estimate.
-    pub divisor: Divisor,
-    /// Weight by distance.
-    pub kernel: Kernel,
-    /// Largest radius of a query \[m\]; `None`: a share of the medium's size.
-    pub max_radius: Option<f64>,
-}
+    /// Loads a scene file with some of its values replaced.
+    ///
+    /// # Errors
+    /// As [`Scene::load`]; a replaced value meets the same limits as one of the file.
+    pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
+        let (file, tree) = SceneFile::load_tree(path, overrides)?;
+        let directory = path.parent().unwrap_or(Path::new(""));
+        Self::build(&file, directory).map_err(|problem| problem.locate(path, &tree))
+    }
 
-/// `[render]`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RenderSettings {
-    /// Rays a pixel, jittered in a grid of that many cells.
-    pub samples_per_pixel: usize,
-    /// Photon-map queries a ray.
-    pub march_samples: usize,
-    /// Single-scattering points a ray and light.
-    pub light_samples: usize,
-    /// Whether single scattering, too, comes from photons (for the lab).
-    pub photons_only: bool,
+    fn build(file: &SceneFile, directory: &Path) -> Result<Self, Problem> {
+        let mut warnings = Vec::new();
+        let medium = build::medium(&file.medium, directory, &mut warnings)?;
+        let lights = file.lights.iter().enumerate();
+        let lights = lights
+            .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            camera: file.camera.camera()?,
+            medium,
+            lights,
+            photons: file.photons,
+            estimate: file.estimate,
+            render: file.render,
+            hash: hash::scene_hash(file, directory)?,
+            warnings,
+        })
+    }
 }

@@ -1,0 +1,80 @@
+//! `[estimate]`
+
+use serde::{Serialize, Serializer};
+
+use super::table::Table;
+use crate::estimate::{Divisor, Kernel};
+use crate::scene::error::Problem;
+
+/// `[estimate]`: how the photon map is read.
+///
+/// | key | type | unit | default | range | meaning |
+/// |---|---|---|---|---|---|
+/// | `k` | integer | | 100 | 1 (2 with divisor `k-1`) to 10^6 | photons of one estimate |
+/// | `divisor` | `"k"`, `"k-1"`, `"k-1/2"` | | `"k-1"` | | numerator of the estimate; `"calibrated"` is reserved |
+/// | `kernel` | `"constant"`, `"epanechnikov"` | | `"constant"` | | weight by distance |
+/// | `max_radius` | number | m | a share of the medium's size | above 0 | largest radius of a query |
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EstimateSettings {
+    /// Photons of one estimate.
+    pub k: usize,
+    /// Numerator of the estimate.
+    #[serde(serialize_with = "serialize_divisor")]
+    pub divisor: Divisor,
+    /// Weight by distance.
+    #[serde(serialize_with = "serialize_kernel")]
+    pub kernel: Kernel,
+    /// Largest radius of a query \[m\]; `None`: a share of the medium's size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_radius: Option<f64>,
+}
+
+/// `None` stands for a divisor that is reserved.
+const DIVISORS: [(&str, Option<Divisor>); 4] = [
+    ("k", Some(Divisor::K)),
+    ("k-1", Some(Divisor::KMinus1)),
+    ("k-1/2", Some(Divisor::KMinusHalf)),
+    ("calibrated", None),
+];
+
+const KERNELS: [(&str, Kernel); 2] =
+    [("constant", Kernel::Constant), ("epanechnikov", Kernel::Epanechnikov)];
+
+const MAX_K: u64 = 1_000_000;
+
+/// The word for a divisor in scene files.
+pub(in crate::scene) fn divisor_word(divisor: Divisor) -> &'static str {
+    match divisor {
+        Divisor::K => "k",
+        Divisor::KMinus1 => "k-1",
+        Divisor::KMinusHalf => "k-1/2",
+    }
+}
+
+fn serialize_divisor<S: Serializer>(divisor: &Divisor, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(divisor_word(*divisor))
+}
+
+fn serialize_kernel<S: Serializer>(kernel: &Kernel, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match kernel {
+        Kernel::Constant => "constant",
+        Kernel::Epanechnikov => "epanechnikov",
+    })
+}
+
+impl EstimateSettings {
+    pub(super) fn read(table: &Table) -> Result<Self, Problem> {
+        table.allow(&["k", "divisor", "kernel", "max_radius"])?;
+        let divisor = table.choose("divisor", &DIVISORS)?.unwrap_or(Some(Divisor::KMinus1));
+        let reserved = "\"calibrated\" is not available yet; use \"k-1\", \"k\" or \"k-1/2\"";
+        let divisor = divisor.ok_or_else(|| table.problem("divisor", reserved))?;
+        let k: u64 = table.get_or("k", 100)?;
+        table.ensure("k", (1..=MAX_K).contains(&k), "must lie in 1 to 1000000")?;
+        let leaves_none = k == 1 && divisor == Divisor::KMinus1;
+        table.ensure("k", !leaves_none, "must be at least 2 with divisor \"k-1\"")?;
+        let max_radius = table.get("max_radius")?;
+        table.ensure("max_radius", max_radius.is_none_or(|r| r > 0.0), "must be above 0")?;
+        let kernel = table.choose("kernel", &KERNELS)?.unwrap_or(Kernel::Constant);
+        Ok(Self { k: k as usize, divisor, kernel, max_radius })
+    }
+}

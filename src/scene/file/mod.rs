@@ -1,0 +1,99 @@
+//! The scene file, section by section: which keys there are, their units, defaults and ranges.
+//!
+//! A file is TOML or JSON of the same structure. Angles are in degrees, lengths in metres, colours linear RGB.
+//! An unknown key is an error.
+
+mod bounds;
+mod camera;
+mod estimate;
+mod light;
+mod medium;
+mod phase;
+mod photons;
+mod render;
+mod table;
+mod transform;
+
+pub use bounds::BoundsSection;
+pub use camera::CameraSection;
+pub use estimate::EstimateSettings;
+pub(super) use estimate::divisor_word;
+pub use light::LightSection;
+pub use medium::MediumSection;
+pub use phase::PhaseSection;
+pub use photons::PhotonSettings;
+pub(super) use photons::emission_word;
+pub use render::RenderSettings;
+pub use transform::TransformSection;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::error::{Problem, SceneError};
+use super::overrides::Overrides;
+use super::tree::{self, Node};
+use table::Table;
+
+/// What a scene file says, every key checked and every default filled in, but no other file opened.
+///
+/// | section | default | meaning |
+/// |---|---|---|
+/// | `[camera]` | required | where the image is taken from: [`CameraSection`] |
+/// | `[medium]` | required | what fills the scene: [`MediumSection`] |
+/// | `[[light]]` | at least one | what lights it: [`LightSection`] |
+/// | `[photons]` | all defaults | how photons are emitted and followed: [`PhotonSettings`] |
+/// | `[estimate]` | all defaults | how the photon map is read: [`EstimateSettings`] |
+/// | `[render]` | all defaults | how pixels are sampled: [`RenderSettings`] |
+///
+/// Serialized, it is a scene file again.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct SceneFile {
+    pub camera: CameraSection,
+    pub medium: MediumSection,
+    #[serde(rename = "light")]
+    pub lights: Vec<LightSection>,
+    pub photons: PhotonSettings,
+    pub estimate: EstimateSettings,
+    pub render: RenderSettings,
+}
+
+impl SceneFile {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// The first thing wrong in the scene file itself; files it names are not looked at.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
+        Self::load_tree(path, overrides).map(|(file, _)| file)
+    }
+
+    /// The file, and the tree it was read from, which knows the lines of later errors.
+    pub(super) fn load_tree(
+        path: &Path,
+        overrides: &Overrides,
+    ) -> Result<(Self, Node), SceneError> {
+        let mut tree = tree::read(path)?;
+        overrides.apply(&mut tree);
+        match Self::read(&tree) {
+            Ok(file) => Ok((file, tree)),
+            Err(problem) => Err(problem.locate(path, &tree)),
+        }
+    }
+
+    fn read(tree: &Node) -> Result<Self, Problem> {
+        let root = Table::root(tree)?;
+        root.allow(&["camera", "medium", "light", "photons", "estimate", "render"])?;
+        let lights = root.sections("light")?;
+        let file = Self {
+            camera: CameraSection::read(&root.section("camera")?)?,
+            medium: MediumSection::read(&root.section("medium")?)?,
+            lights: lights.iter().map(LightSection::read).collect::<Result<_, _>>()?,
+            photons: PhotonSettings::read(&root.section("photons")?)?,
+            estimate: EstimateSettings::read(&root.section("estimate")?)?,
+            render: RenderSettings::read(&root.section("render")?)?,
+        };
+        root.ensure("light", !file.lights.is_empty(), "the scene has no light; add a [[light]]")?;
+        Ok(file)
+    }
+}

@@ -1,0 +1,41 @@
+//! Values given outside the scene file, usually on the command line.
+
+use super::tree::{Node, Origin, Value};
+
+/// Values that replace those of the scene file before it is checked: they meet the same limits and errors.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// `photons.count`
+    pub photons: Option<u64>,
+    /// `photons.emission`, as the file spells it.
+    pub emission: Option<String>,
+    /// `photons.seed`
+    pub seed: Option<u64>,
+    /// `estimate.k`
+    pub k: Option<u64>,
+    /// `estimate.divisor`, as the file spells it.
+    pub divisor: Option<String>,
+    /// `camera.resolution`: width, height \[pixels\].
+    pub resolution: Option<[u64; 2]>,
+}
+
+impl Overrides {
+    pub(super) fn apply(&self, tree: &mut Node) {
+        let integer = |value: u64| Value::Integer(value.into());
+        let mut set = |section: &str, key: &str, value: Option<Value>| {
+            if let Some(value) = value {
+                tree.set(section, key, value);
+            }
+        };
+        set("photons", "count", self.photons.map(integer));
+        set("photons", "emission", self.emission.clone().map(Value::Text));
+        set("photons", "seed", self.seed.map(integer));
+        set("estimate", "k", self.k.map(integer));
+        set("estimate", "divisor", self.divisor.clone().map(Value::Text));
+        let resolution = self.resolution.map(|sides| {
+            let item = |side| Node { origin: Origin::Override, value: integer(side) };
+            Value::List(sides.map(item).into())
+        });
+        set("camera", "resolution", resolution);
+    }
+}
