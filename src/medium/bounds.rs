@@ -112,6 +112,11 @@ impl Parallelepiped {
         Self { corner, edges, inverse }
     }
 
+    /// The three edges that leave one corner \[m\].
+    pub fn edges(&self) -> [DVec3; 3] {
+        self.edges
+    }
+
     /// The six faces.
     pub fn faces(&self) -> [Face; 6] {
         let handedness = self.edges[0].cross(self.edges[1]).dot(self.edges[2]).signum();

@@ -29,4 +29,15 @@ impl PowerBalance {
         self.truncated += other.truncated;
         self.resampled += other.resampled;
     }
+
+    /// Makes this, the mean over `passes` passes, the mean that includes another pass.
+    pub fn average_in(&mut self, pass: &Self, passes: u32) {
+        let share = 1.0 / (f64::from(passes) + 1.0);
+        let towards = |mean: &mut Rgb, value: Rgb| *mean += (value - *mean) * share;
+        towards(&mut self.emitted, pass.emitted);
+        towards(&mut self.absorbed, pass.absorbed);
+        towards(&mut self.escaped, pass.escaped);
+        towards(&mut self.truncated, pass.truncated);
+        towards(&mut self.resampled, pass.resampled);
+    }
 }

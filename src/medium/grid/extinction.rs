@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     math::{Ball, DAffine3, DMat3, DVec3, Random, Ray, Rgb, Span},
-    medium::{Bounds, Extinction, Flight, Parallelepiped, ProfileKnot, RayProfile},
+    medium::{BallIntegral, Bounds, Extinction, Flight, Parallelepiped, ProfileKnot, RayProfile},
 };
 
 /// Extinction of a density grid in world space, the same in all channels.
@@ -94,7 +94,7 @@ impl Placement {
         let edges = [linear.x_axis * extent.x, linear.y_axis * extent.y, linear.z_axis * extent.z];
         let corner = index_to_world.transform_point3(min);
         Some(Self {
-            bounds: Parallelepiped { corner, edges },
+            bounds: Parallelepiped::new(corner, edges),
             world_center,
             local_center: index_center - grid.local_origin(),
             world_to_local,
@@ -162,19 +162,20 @@ impl Extinction for GridExtinction {
         });
     }
 
-    fn ball_extinction(&self, _: &Bounds, ball: Ball, ceiling: f64, phase: f64) -> f64 {
-        let Some(placement) = &self.placement else { return 0.0 };
-        let (points, turn) = self.ball_points.turned(phase);
+    fn ball_integral(&self, _: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral {
+        let mut integral = BallIntegral::default();
+        let Some(placement) = &self.placement else { return integral };
+        let (points, turned) = self.ball_points.turned(turn);
         let center = placement.local_point(ball.center);
-        let to_local = placement.world_to_local * turn * ball.radius;
-        let sum: f64 = points
-            .iter()
-            .map(|&point| {
-                let density = self.grid.local_density((center + to_local * point).to_array());
-                (self.density_scale * density).min(ceiling)
-            })
-            .sum();
-        ball.volume() * sum / POINT_COUNT as f64
+        let to_local = placement.world_to_local * turned * ball.radius;
+        let scale = self.density_scale / ceiling;
+        for &point in points {
+            let density = self.grid.local_density((center + to_local * point).to_array());
+            let share = (scale * density).min(1.0);
+            integral.mass += share;
+            integral.second_moment += share * point.length_squared();
+        }
+        integral.scaled(ball.volume() / POINT_COUNT as f64)
     }
 }
 
