@@ -1,5 +1,8 @@
 //! How many collisions a photon is expected to have, to the order of magnitude: enough to say before a render
 //! whether its photons fit into memory.
+//!
+//! A photon that enters collides with probability 1 - exp(-tau) over a chord of optical depth tau, and one that
+//! starts inside with 1 - 1/(1 + tau) (Wigner's rational approximation for convex bodies).
 
 use super::Scene;
 use crate::math::{DVec3, Ray, Span, max_channel};
@@ -8,44 +11,64 @@ use crate::medium::{Bounds, Extinction, GridExtinction, MediumExtinction, Parall
 /// Rays through a grid from each of three sides, along either axis of the side.
 const RAYS_PER_AXIS: usize = 8;
 
-/// Collisions of a photon that enters the medium: with probability p of colliding on a flight and albedo a,
-/// p + p (a p) + p (a p)^2 + ... up to the largest order followed.
+/// Collisions of a photon that enters the medium: the first, and after each, with albedo a, another with
+/// probability a p, up to the largest order followed.
 pub(super) fn expected_collisions(scene: &Scene) -> f64 {
-    let collides = collision_probability(scene);
-    let goes_on = collides * max_channel(scene.medium.albedo);
+    let chords = Chords::of(scene);
+    let again = max_channel(scene.medium.albedo) * (1.0 - 1.0 / (1.0 + chords.optical_depth));
     let orders = f64::from(scene.photons.max_order);
-    let geometric = (1.0 - goes_on.powf(orders)) / (1.0 - goes_on);
-    collides * if goes_on < 1.0 { geometric } else { orders }
+    let geometric = (1.0 - again.powf(orders)) / (1.0 - again);
+    chords.first_collision * if again < 1.0 { geometric } else { orders }
 }
 
-/// Of a flight through the medium: over the mean chord if it is homogeneous, over rays through a grid.
-fn collision_probability(scene: &Scene) -> f64 {
-    let bounds = &scene.medium.bounds;
-    let over_chord = |sigma_t: f64| match sigma_t > 0.0 {
-        true => 1.0 - (-sigma_t * mean_chord(bounds)).exp(),
-        false => 0.0,
-    };
-    match (&scene.medium.extinction, bounds) {
-        (MediumExtinction::Uniform(uniform), _) => over_chord(uniform.sigma_t),
-        (MediumExtinction::Chromatic(chromatic), _) => over_chord(max_channel(chromatic.sigma_t)),
-        (MediumExtinction::Grid(grid), Bounds::Parallelepiped(shape)) => through_grid(grid, shape),
-        (MediumExtinction::Grid(grid), _) => over_chord(grid.max_sigma_t()),
-    }
+/// Straight ways through a medium.
+struct Chords {
+    /// Probability of colliding on one of them.
+    first_collision: f64,
+    /// Mean optical depth of those on which a photon collides.
+    optical_depth: f64,
 }
 
-/// The mean of 1 - transmittance over rays parallel to the edges.
-fn through_grid(grid: &GridExtinction, shape: &Parallelepiped) -> f64 {
-    let cells = || (0..RAYS_PER_AXIS).map(|cell| (cell as f64 + 0.5) / RAYS_PER_AXIS as f64);
-    let mut sum = 0.0;
-    for axis in 0..3 {
-        let [along, u, v] = [0, 1, 2].map(|turn| shape.edges[(axis + turn) % 3]);
-        for (a, b) in cells().flat_map(|a| cells().map(move |b| (a, b))) {
-            let ray = Ray::new(shape.corner + a * u + b * v, along.normalize());
-            let optical_depth = grid.optical_depth(&ray, Span::new(0.0, along.length()));
-            sum += 1.0 - (-max_channel(optical_depth)).exp();
+impl Chords {
+    fn of(scene: &Scene) -> Self {
+        let bounds = &scene.medium.bounds;
+        match (&scene.medium.extinction, bounds) {
+            (MediumExtinction::Uniform(uniform), _) => Self::mean(bounds, uniform.sigma_t),
+            (MediumExtinction::Chromatic(chromatic), _) => {
+                Self::mean(bounds, max_channel(chromatic.sigma_t))
+            }
+            (MediumExtinction::Grid(grid), Bounds::Parallelepiped(shape)) => {
+                Self::through(grid, shape)
+            }
+            (MediumExtinction::Grid(grid), _) => Self::mean(bounds, grid.max_sigma_t()),
         }
     }
-    sum / (3 * RAYS_PER_AXIS * RAYS_PER_AXIS) as f64
+
+    /// The mean chord stands for all.
+    fn mean(bounds: &Bounds, sigma_t: f64) -> Self {
+        let optical_depth = if sigma_t > 0.0 { sigma_t * mean_chord(bounds) } else { 0.0 };
+        Self { first_collision: 1.0 - (-optical_depth).exp(), optical_depth }
+    }
+
+    /// Rays parallel to the edges of a grid.
+    fn through(grid: &GridExtinction, shape: &Parallelepiped) -> Self {
+        let centers = || (0..RAYS_PER_AXIS).map(|cell| (cell as f64 + 0.5) / RAYS_PER_AXIS as f64);
+        let (mut collisions, mut depths) = (0.0, 0.0);
+        for axis in 0..3 {
+            let [along, u, v] = [0, 1, 2].map(|turn| shape.edges[(axis + turn) % 3]);
+            for (a, b) in centers().flat_map(|a| centers().map(move |b| (a, b))) {
+                let ray = Ray::new(shape.corner + a * u + b * v, along.normalize());
+                let depth = max_channel(grid.optical_depth(&ray, Span::new(0.0, along.length())));
+                let collides = 1.0 - (-depth).exp();
+                collisions += collides;
+                depths += collides * depth;
+            }
+        }
+        Self {
+            first_collision: collisions / (3 * RAYS_PER_AXIS * RAYS_PER_AXIS) as f64,
+            optical_depth: if collisions > 0.0 { depths / collisions } else { 0.0 },
+        }
+    }
 }
 
 /// 4 V / S (Cauchy) \[m\].
