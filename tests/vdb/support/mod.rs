@@ -1,0 +1,4 @@
+//! The OpenVDB library's own answers about a file, and what is needed to compare a read grid with them.
+
+pub mod answer;
+pub mod hash;
