@@ -1,12 +1,19 @@
-//! Every file of `tests/vdb/` against the OpenVDB library's own answer: every voxel and tile by hash, counts,
-//! bounds, transform, samples. `PHOTONVDB_VDB_CORPUS=directory` checks all files of another directory too.
+//! Every file of `tests/vdb/` against the OpenVDB library's own answer: every voxel and tile by
+//! hash, counts, bounds, transform, samples. `PHOTONVDB_VDB_CORPUS=directory` checks all files of
+//! another directory too.
 
+#[path = "vdb/refusals.rs"]
+mod refusals;
+#[path = "vdb/streams.rs"]
+mod streams;
 #[path = "vdb/support/mod.rs"]
 mod support;
 
 use std::path::{Path, PathBuf};
 
+use photonvdb::medium::vdb::{Limits, VdbFile, VolumeSource, find_density, sanitize_density};
 use support::answer::check_file;
+use support::bytes::directory;
 
 fn files(directory: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(directory).unwrap();
@@ -36,7 +43,7 @@ fn check_directory(directory: &Path) -> usize {
 
 #[test]
 fn committed_files_are_read_as_the_library_reads_them() {
-    let count = check_directory(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/vdb"));
+    let count = check_directory(&directory());
     assert!(count >= 40, "only {count} files");
 }
 
@@ -44,5 +51,18 @@ fn committed_files_are_read_as_the_library_reads_them() {
 fn another_corpus_is_read_as_the_library_reads_it() {
     if let Some(directory) = std::env::var_os("PHOTONVDB_VDB_CORPUS") {
         assert!(check_directory(Path::new(&directory)) > 0);
+    }
+}
+
+/// The volumes scenes start from: sound, usable, and as many voxels as `media/README.md` says.
+#[test]
+fn media_can_be_used_as_they_are() {
+    for (name, active_count) in [("smoke_plume", 119_778), ("fire", 193_759), ("cloud", 235_542)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name);
+        let file = VdbFile::open(&path.with_extension("vdb")).unwrap();
+        let index = find_density(&file, "density", false).unwrap();
+        assert_eq!(file.grids()[index].active_voxel_count, active_count, "{name}");
+        let mut grid = file.load_scalar(index, &Limits::default()).unwrap();
+        assert_eq!(sanitize_density(&mut grid).total(), 0, "{name}");
     }
 }

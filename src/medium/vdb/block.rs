@@ -1,9 +1,9 @@
 //! The values of one node, with what the active-mask compression left out put back.
 //!
-//! A byte says how inactive values are told: 0 all are the background, 1 all are minus the background, 2 all
-//! are one value that follows, 3 a mask selects between minus and plus background, 4 between one value and
-//! the background, 5 between two values, 6 all values are stored. Under the active-mask flag, only the
-//! active values are stored unless the byte is 6.
+//! A byte says how inactive values are told: 0 all are the background, 1 all are minus the
+//! background, 2 all are one value that follows, 3 a mask selects between minus and plus
+//! background, 4 between one value and the background, 5 between two values, 6 all values are
+//! stored. Under the active-mask flag, only the active values are stored unless the byte is 6.
 
 use super::codec::{Chunk, Compression, Scratch};
 use super::cursor::Cursor;
@@ -50,7 +50,8 @@ pub(super) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// Reads the block of a node of `len` values, `active_count` of them active, without unpacking it.
+    /// Reads the block of a node of `len` values, `active_count` of them active, without unpacking
+    /// it.
     pub(super) fn read(
         cursor: &mut Cursor<'a>,
         layout: &Layout,
@@ -158,20 +159,19 @@ mod tests {
     fn every_code_restores_its_inactive_values() {
         // Voxel 3 is the one the selection picks.
         let picked = Some(1 << 3);
-        let cases: [(u8, &[f32], Option<u64>, f32, f32); 6] = [
-            (0, &[], None, 2.0, 2.0),
-            (1, &[], None, -2.0, -2.0),
-            (2, &[5.0], None, 5.0, 5.0),
-            (3, &[], picked, -2.0, 2.0),
-            (4, &[5.0], picked, 5.0, 2.0),
-            (5, &[5.0, 6.0], picked, 5.0, 6.0),
-        ];
-        for (code, inactive, selection, others, third) in cases {
+        // Code, values told, selection; then the values of the other voxels and of voxel 3.
+        let expect = |code, inactive: &[f32], selection, others, third| {
             let mut expected = vec![others; 64];
             expected[0] = 9.0;
             expected[3] = third;
             assert_eq!(values(code, inactive, selection), expected, "code {code}");
-        }
+        };
+        expect(0, &[], None, 2.0, 2.0);
+        expect(1, &[], None, -2.0, -2.0);
+        expect(2, &[5.0], None, 5.0, 5.0);
+        expect(3, &[], picked, -2.0, 2.0);
+        expect(4, &[5.0], picked, 5.0, 2.0);
+        expect(5, &[5.0, 6.0], picked, 5.0, 6.0);
     }
 
     #[test]

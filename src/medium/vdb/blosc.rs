@@ -1,9 +1,10 @@
 //! Blosc 1 frames: a header, offsets of blocks, and in each block one or several packed streams.
 //!
-//! Header, 16 bytes: version, version of the codec, flags, size of a value, then as u32 the unpacked length,
-//! the length of a block, and the length of the frame. Flags: 1 bytes shuffled, 2 stored unpacked, 4 bits
-//! shuffled, 16 blocks not split; the upper three bits are the codec. A block is split into as many streams
-//! as a value has bytes, where blocks are long enough. Source: c-blosc's README_HEADER and blosc.c.
+//! Header, 16 bytes: version, version of the codec, flags, size of a value, then as u32 the
+//! unpacked length, the length of a block, and the length of the frame. Flags: 1 bytes shuffled, 2
+//! stored unpacked, 4 bits shuffled, 16 blocks not split; the upper three bits are the codec. A
+//! block is split into as many streams as a value has bytes, where blocks are long enough. Source:
+//! c-blosc's README_HEADER and blosc.c.
 
 use super::codec::inflate;
 use super::cursor::Cursor;
@@ -15,7 +16,8 @@ const BYTE_SHUFFLE: u8 = 0x1;
 const STORED: u8 = 0x2;
 const BIT_SHUFFLE: u8 = 0x4;
 const NOT_SPLIT: u8 = 0x10;
-/// Values of more bytes are never split into streams, nor are streams of fewer bytes than `MIN_STREAM`.
+/// Values of more bytes are never split into streams, nor are streams of fewer bytes than
+/// `MIN_STREAM`.
 const MAX_STREAMS: usize = 16;
 const MIN_STREAM: usize = 128;
 const WHAT: &str = "a Blosc frame";
@@ -38,7 +40,8 @@ impl Packer {
             _ => "an unknown codec",
         };
         Err(Fault::Unsupported(format!(
-            "its Blosc frames are packed with {name} and only LZ4 and zlib are read; save it again with OpenVDB's own Blosc or zip compression"
+            "its Blosc frames are packed with {name} and only LZ4 and zlib are read; \
+                save it again with OpenVDB's own Blosc or zip compression"
         )))
     }
 
@@ -79,7 +82,8 @@ pub(super) fn unpack(frame: &[u8], out: &mut [u8], shuffled: &mut Vec<u8>) -> Re
     }
     if flags & BIT_SHUFFLE != 0 {
         return Err(Fault::Unsupported(
-            "its Blosc frames have their bits shuffled; save it again with OpenVDB's own Blosc or zip compression"
+            "its Blosc frames have their bits shuffled; \
+                save it again with OpenVDB's own Blosc or zip compression"
                 .into(),
         ));
     }
@@ -133,8 +137,8 @@ fn unpack_streams(
     Ok(())
 }
 
-/// Puts back together values whose first bytes come first, then all second bytes, and so on. Bytes after the
-/// last whole value were left in place.
+/// Puts back together values whose first bytes come first, then all second bytes, and so on. Bytes
+/// after the last whole value were left in place.
 fn unshuffle(shuffled: &[u8], value_len: usize, out: &mut [u8]) {
     let count = out.len() / value_len;
     let (values, rest) = out.split_at_mut(count * value_len);

@@ -31,11 +31,13 @@ impl Compression {
     const ACTIVE_MASK: u32 = 2;
     const BLOSC: u32 = 4;
 
-    /// From the flags in the file. Where both are set, Blosc goes before zip, as in the OpenVDB library.
+    /// From the flags in the file. Where both are set, Blosc goes before zip, as in the OpenVDB
+    /// library.
     pub(super) fn from_flags(flags: u32) -> Result<Self, Fault> {
         if flags & !(Self::ZIP | Self::ACTIVE_MASK | Self::BLOSC) != 0 {
             return Err(Fault::Unsupported(format!(
-                "its compression (flags {flags:#x}) is unknown; save it again with Blosc or zip compression"
+                "its compression (flags {flags:#x}) is unknown; \
+                save it again with Blosc or zip compression"
             )));
         }
         let codec = if flags & Self::BLOSC != 0 {

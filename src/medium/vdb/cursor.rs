@@ -1,4 +1,5 @@
-//! A place in the bytes of a file that moves forward and never past the end. All numbers are little-endian.
+//! A place in the bytes of a file that moves forward and never past the end. All numbers are
+//! little-endian.
 
 use super::fault::Fault;
 
@@ -71,7 +72,8 @@ impl<'a> Cursor<'a> {
         Ok([self.i32(what)?, self.i32(what)?, self.i32(what)?])
     }
 
-    /// A length and as many bytes of UTF-8; what is not UTF-8 is replaced, as names are only shown and compared.
+    /// A length and as many bytes of UTF-8; what is not UTF-8 is replaced, as names are only shown
+    /// and compared.
     pub(super) fn string(&mut self, what: &'static str) -> Result<String, Fault> {
         let len = self.u32(what)? as usize;
         if len > MAX_STRING {

@@ -19,7 +19,8 @@ pub enum VdbError {
     },
     /// The file's version of the format is too old or too new.
     #[error(
-        "{file} has OpenVDB file version {version} and versions 222 to 225 can be read; save it again with a current OpenVDB"
+        "{file} has OpenVDB file version {version} and versions 222 to 225 can be read; \
+                save it again with a current OpenVDB"
     )]
     Version {
         /// The file.
@@ -67,7 +68,8 @@ pub enum VdbError {
     },
     /// The grid holds another type of value.
     #[error(
-        "grid \"{grid}\" of {file} holds {value_type} values where {wanted} are wanted; name another grid"
+        "grid \"{grid}\" of {file} holds {value_type} values where {wanted} are wanted; \
+                name another grid"
     )]
     WrongType {
         /// The file.
@@ -81,7 +83,8 @@ pub enum VdbError {
     },
     /// The grid holds distances to a surface.
     #[error(
-        "grid \"{grid}\" of {file} is a level set: it holds distances to a surface, not densities; convert it to a fog volume first"
+        "grid \"{grid}\" of {file} is a level set: it holds distances to a surface, \
+                not densities; convert it to a fog volume first"
     )]
     LevelSet {
         /// The file.
@@ -91,8 +94,9 @@ pub enum VdbError {
     },
     /// The grid would take more memory than allowed.
     #[error(
-        "grid \"{grid}\" of {file} needs {} of memory and the limit is {}; raise the limit or export it at a lower resolution",
-        gibibytes(*needed), gibibytes(*limit)
+        "grid \"{grid}\" of {file} needs {} of memory and the limit is {}; \
+                raise the limit or export it at a lower resolution",
+        memory_size(*needed), memory_size(*limit)
     )]
     TooLarge {
         /// The file.
@@ -106,8 +110,9 @@ pub enum VdbError {
     },
     /// The machine has not got the memory.
     #[error(
-        "grid \"{grid}\" of {file} needs {} of memory, more than there is; export it at a lower resolution",
-        gibibytes(*needed)
+        "grid \"{grid}\" of {file} needs {} of memory, more than there is; \
+                export it at a lower resolution",
+        memory_size(*needed)
     )]
     OutOfMemory {
         /// The file.
@@ -120,7 +125,7 @@ pub enum VdbError {
 }
 
 /// A number of bytes in the unit that suits it.
-pub(super) fn gibibytes(bytes: u64) -> String {
+pub(super) fn memory_size(bytes: u64) -> String {
     const UNITS: [(&str, u32); 3] = [("GiB", 30), ("MiB", 20), ("KiB", 10)];
     match UNITS.iter().find(|(_, shift)| bytes >> shift > 0) {
         Some((unit, shift)) => format!("{:.1} {unit}", bytes as f64 / (1u64 << shift) as f64),

@@ -1,6 +1,6 @@
 //! What goes wrong inside a grid or a header, before the file and the grid are named.
 
-use super::error::{VdbError, gibibytes};
+use super::error::{VdbError, memory_size};
 
 /// A reason for not reading on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -15,10 +15,10 @@ pub(super) enum Fault {
     #[error("{0}")]
     Unsupported(String),
     /// The grid would take more memory than allowed.
-    #[error("it needs {} of memory and the limit is {}", gibibytes(*needed), gibibytes(*limit))]
+    #[error("it needs {} of memory and the limit is {}", memory_size(*needed), memory_size(*limit))]
     TooLarge { needed: u64, limit: u64 },
     /// The machine has not got the memory.
-    #[error("it needs {} of memory, more than there is", gibibytes(*needed))]
+    #[error("it needs {} of memory, more than there is", memory_size(*needed))]
     OutOfMemory { needed: u64 },
 }
 

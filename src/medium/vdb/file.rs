@@ -30,8 +30,8 @@ impl VdbFile {
     /// Reads the file into memory and lists its grids.
     ///
     /// # Errors
-    /// When it cannot be read, is not an OpenVDB file, is of an unknown version, or is damaged before its
-    /// first grid. A grid that cannot be used is no error here: its summary says why.
+    /// When it cannot be read, is not an OpenVDB file, is of an unknown version, or is damaged
+    /// before its first grid. A grid that cannot be used is no error here: its summary says why.
     pub fn open(path: &Path) -> Result<Self, VdbError> {
         let name = path.display().to_string();
         match read_vdb(path) {
@@ -155,7 +155,8 @@ impl VolumeSource for VdbFile {
     }
 }
 
-/// The file's bytes; none when it does not begin as a VDB does, so that no other large file is read.
+/// The file's bytes; none when it does not begin as a VDB does, so that no other large file is
+/// read.
 fn read_vdb(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
     let mut file = File::open(path)?;
     let mut bytes = Vec::new();

@@ -13,8 +13,8 @@ const NAMED_IN_MESSAGE: usize = 12;
 /// A name that several grids have means the first of them; `name[1]` is the second.
 ///
 /// # Errors
-/// When there is no such grid, naming those there are; when it cannot be used, is not of numbers, or is a
-/// level set.
+/// When there is no such grid, naming those there are; when it cannot be used, is not of numbers,
+/// or is a level set.
 pub fn find_density(
     source: &dyn VolumeSource,
     name: &str,

@@ -1,9 +1,9 @@
 //! The grids of a file, found without reading their values.
 //!
-//! After mark and version come: library version (two numbers), a byte that says whether grids have offsets, a
-//! UUID of 36 characters, metadata, and the number of grids. Each grid has an entry; its body is compression,
-//! metadata, transform, tree. A file written to a stream has no offsets: its grids follow one another, and
-//! each must be walked over to find the next.
+//! After mark and version come: library version (two numbers), a byte that says whether grids have
+//! offsets, a UUID of 36 characters, metadata, and the number of grids. Each grid has an entry; its
+//! body is compression, metadata, transform, tree. A file written to a stream has no offsets: its
+//! grids follow one another, and each must be walked over to find the next.
 
 use std::collections::HashMap;
 
@@ -34,7 +34,8 @@ pub(super) struct Listing {
 }
 
 impl Listing {
-    /// Reads the header after the version, and every grid up to its values. Fails when not even one is found.
+    /// Reads the header after the version, and every grid up to its values. Fails when not even one
+    /// is found.
     pub(super) fn read<'a>(cursor: &mut Cursor<'a>, bytes: &'a [u8]) -> Result<Self, Fault> {
         let _library_version = cursor.array::<8>(WHAT)?;
         let has_offsets = cursor.u8(WHAT)? != 0;
@@ -133,8 +134,8 @@ struct ListedGrid {
 }
 
 impl ListedGrid {
-    /// Reads the entry at the cursor and the grid it tells of, adds the grid, and moves the cursor to the next
-    /// entry. Fails when it is not known where that one begins.
+    /// Reads the entry at the cursor and the grid it tells of, adds the grid, and moves the cursor
+    /// to the next entry. Fails when it is not known where that one begins.
     fn read<'a>(
         cursor: &mut Cursor<'a>,
         bytes: &'a [u8],
@@ -165,7 +166,8 @@ impl ListedGrid {
         }
     }
 
-    /// Reads the grid where its entry says it is. Its own faults stay its own: the next entry is known.
+    /// Reads the grid where its entry says it is. Its own faults stay its own: the next entry is
+    /// known.
     fn read_in_place<'a>(&mut self, cursor: &mut Cursor<'a>, bytes: &'a [u8]) -> Result<(), Fault> {
         let place = self.descriptor.place(cursor.position(), bytes.len());
         let place = place.inspect_err(|fault| self.fault = Some(fault.clone()))?;

@@ -67,7 +67,8 @@ pub(super) fn load<V: GridValue, O: Copy + Default + Send + Sync>(
     walk(&mut cursor, &tree.layout, &mut builder)?;
     let Builder { mut grid, background, .. } = builder;
 
-    // Where each leaf's values are is known only from the lengths of those before: find all, then unpack in parallel.
+    // Where each leaf's values are is known only from the lengths of those before: find all, then
+    // unpack in parallel.
     let blocks = grid
         .masks
         .iter()

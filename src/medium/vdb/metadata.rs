@@ -1,6 +1,7 @@
 //! The named values written before a file's grids and before each grid's transform.
 //!
-//! Each is a name, a type, a length and as many bytes; what is not needed here is passed over by its length.
+//! Each is a name, a type, a length and as many bytes; what is not needed here is passed over by
+//! its length.
 
 use super::cursor::Cursor;
 use super::fault::Fault;

@@ -1,14 +1,15 @@
 //! Reading OpenVDB files, in safe code.
 //!
-//! [`VolumeSource`] is the seam: whatever reads the file returns plain [`SparseGrid`]s. [`VdbFile`] is the
-//! project's own reader of the format, written after the OpenVDB library's `io` sources (file versions
-//! 222 to 225). The modules follow the order of the bytes:
+//! [`VolumeSource`] is the seam: whatever reads the file returns plain [`SparseGrid`]s. [`VdbFile`]
+//! is the project's own reader of the format, written after the OpenVDB library's `io` sources
+//! (file versions 222 to 225). The modules follow the order of the bytes:
 //!
-//! file and descriptors -> metadata -> transform -> tree (topology) -> block (values of a node) -> codec, blosc.
+//! file and descriptors -> metadata -> transform -> tree (topology) -> block (values of a node) ->
+//! codec, blosc.
 //!
-//! A file is data from a stranger: every length and offset is checked before it is used, nothing recurses,
-//! and the memory a grid takes is computed from its topology and compared with [`Limits`] before any of it
-//! is allocated.
+//! A file is data from a stranger: every length and offset is checked before it is used, nothing
+//! recurses, and the memory a grid takes is computed from its topology and compared with [`Limits`]
+//! before any of it is allocated.
 
 mod block;
 mod blosc;
@@ -45,12 +46,12 @@ pub trait VolumeSource {
     /// Every grid of the file, in its order, those that cannot be read included.
     fn grids(&self) -> &[GridSummary];
 
-    /// Reads a grid of numbers, converted to `f32` (of double and integer grids the nearest value). Values
-    /// pass through as they are, NaN and infinite ones included: see [`sanitize_density`].
+    /// Reads a grid of numbers, converted to `f32` (of double and integer grids the nearest value).
+    /// Values pass through as they are, NaN and infinite ones included: see [`sanitize_density`].
     ///
     /// # Errors
-    /// When there is no such grid, when it is not of numbers, cannot be used, is damaged, or needs more
-    /// memory than `limits` allows.
+    /// When there is no such grid, when it is not of numbers, cannot be used, is damaged, or needs
+    /// more memory than `limits` allows.
     fn load_scalar(&self, index: usize, limits: &Limits) -> Result<SparseGrid<f32>, VdbError>;
 
     /// Reads a grid of three-component vectors (velocity, colour), converted to `f32`.

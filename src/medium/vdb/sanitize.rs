@@ -1,5 +1,5 @@
-//! Making a density grid safe to trace: an infinite density would stop a photon's flight for ever, and a
-//! negative or NaN one has no meaning.
+//! Making a density grid safe to trace: an infinite density would stop a photon's flight for ever,
+//! and a negative or NaN one has no meaning.
 
 use rayon::prelude::*;
 
@@ -46,8 +46,8 @@ impl SanitizeCount {
     }
 }
 
-/// Sets every value that cannot be a density to 0, of active and inactive voxels, tiles and the background,
-/// and counts them.
+/// Sets every value that cannot be a density to 0, of active and inactive voxels, tiles and the
+/// background, and counts them.
 pub fn sanitize_density(grid: &mut SparseGrid<f32>) -> SanitizeCount {
     let constants = grid.tiles.iter_mut().map(|tile| &mut tile.value);
     let count = constants

@@ -37,7 +37,8 @@ pub struct GridSummary {
     pub name: String,
     /// Name that no other grid of the file has: `density[1]` for the second grid named so.
     pub unique_name: String,
-    /// Type of a voxel as OpenVDB names it ("float", "double", "int32", "vec3s", "bool", ...), or "points".
+    /// Type of a voxel as OpenVDB names it ("float", "double", "int32", "vec3s", "bool", ...), or
+    /// "points".
     pub value_type: String,
     /// "fog volume", "level set", "staggered" or "unknown".
     pub class: String,
@@ -47,7 +48,8 @@ pub struct GridSummary {
     pub compression: String,
     /// OpenVDB's name of the transform's kind.
     pub map: String,
-    /// Index to world \[world units per voxel\], when there is one that is affine and can be inverted.
+    /// Index to world \[world units per voxel\], when there is one that is affine and can be
+    /// inverted.
     pub index_to_world: Option<DAffine3>,
     /// Value outside the tree, of a grid of numbers.
     pub background: Option<f64>,
@@ -159,7 +161,8 @@ impl TreeVisitor for Census {
     }
 }
 
-/// Bounds of a leaf's active voxels. A word of the mask is a slice of constant x, a byte of it a row of z.
+/// Bounds of a leaf's active voxels. A word of the mask is a slice of constant x, a byte of it a
+/// row of z.
 fn active_bounds(origin: [i32; 3], mask: &[u64; 8]) -> Option<IndexBox> {
     let x_min = mask.iter().position(|&slice| slice != 0)?;
     let x_max = mask.iter().rposition(|&slice| slice != 0)?;

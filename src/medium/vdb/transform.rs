@@ -1,7 +1,7 @@
 //! A grid's map from index to world space.
 //!
-//! OpenVDB multiplies row vectors and keeps the translation in a matrix's last row; the same 16 numbers,
-//! read as columns, are the matrix of column vectors used here.
+//! OpenVDB multiplies row vectors and keeps the translation in a matrix's last row; the same 16
+//! numbers, read as columns, are the matrix of column vectors used here.
 
 use glam::DMat4;
 
@@ -9,7 +9,8 @@ use super::cursor::Cursor;
 use super::fault::Fault;
 use crate::math::{DAffine3, DVec3};
 
-/// A map as read: its bytes are consumed even where it cannot be used, so that a stream can be read on.
+/// A map as read: its bytes are consumed even where it cannot be used, so that a stream can be read
+/// on.
 #[derive(Clone, Debug)]
 pub(super) struct Transform {
     /// OpenVDB's name of the map.
@@ -44,12 +45,15 @@ impl Transform {
                 cursor.string("the transform")?;
                 matrix(cursor)?;
                 Err(Fault::Unsupported(
-                    "it lies in a camera's frustum (a non-linear transform); resample it to a uniform grid first".into(),
+                    "it lies in a camera's frustum (a non-linear transform); \
+                resample it to a uniform grid first"
+                        .into(),
                 ))
             }
             other => {
                 return Err(Fault::Unsupported(format!(
-                    "its transform is of the unknown kind {other:?}; save it again with OpenVDB 12 or older"
+                    "its transform is of the unknown kind {other:?}; \
+                save it again with OpenVDB 12 or older"
                 )));
             }
         };
@@ -98,6 +102,19 @@ mod tests {
         // A row vector (1, 0, 0) picks the first row.
         let world = transform.index_to_world.unwrap().transform_point3(DVec3::X);
         assert_eq!(world, DVec3::new(5., 8., 7.));
+    }
+
+    #[test]
+    fn the_maps_without_a_scale_are_read_too() {
+        let read = |map, numbers: &[f64]| {
+            let file = bytes(map, numbers);
+            let transform = Transform::read(&mut Cursor::new(&file, 0)).unwrap();
+            transform.index_to_world.unwrap().transform_point3(DVec3::new(1., 2., 3.))
+        };
+        assert_eq!(read("TranslationMap", &[10., 20., 30.]), DVec3::new(11., 22., 33.));
+        // The quarter turn that takes x to y.
+        let turn = [0., 1., 0., 0., -1., 0., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+        assert_eq!(read("UnitaryMap", &turn), DVec3::new(-2., 1., 3.));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The topology of a 5-4-3 tree: root, nodes of 32^3, nodes of 16^3, leaves of 8^3 voxels.
 //!
-//! Nodes lie in the file depth first. [`walk`] shows each to a [`TreeVisitor`]; the values of leaves come
-//! after the whole topology, in the same order.
+//! Nodes lie in the file depth first. [`walk`] shows each to a [`TreeVisitor`]; the values of
+//! leaves come after the whole topology, in the same order.
 
 use std::collections::HashSet;
 
@@ -93,7 +93,8 @@ impl<'a> Node<'a> {
     }
 }
 
-/// Shows every node of the tree at the cursor to the visitor, and leaves the cursor behind the topology.
+/// Shows every node of the tree at the cursor to the visitor, and leaves the cursor behind the
+/// topology.
 pub(super) fn walk(
     cursor: &mut Cursor<'_>,
     layout: &Layout,
@@ -153,7 +154,8 @@ fn leaf_mask(cursor: &mut Cursor<'_>) -> Result<[u64; 8], Fault> {
     Ok(mask)
 }
 
-/// Reads the values of a leaf without unpacking them. They follow its mask, which comes a second time.
+/// Reads the values of a leaf without unpacking them. They follow its mask, which comes a second
+/// time.
 pub(super) fn leaf_block<'a>(
     cursor: &mut Cursor<'a>,
     layout: &Layout,

@@ -45,7 +45,8 @@ impl ValueType {
         };
         if shape != "5_4_3" {
             let reason = format!(
-                "its tree is {tree} and only 5-4-3 trees can be read; convert it to a standard grid first"
+                "its tree is {tree} and only 5-4-3 trees can be read; \
+                convert it to a standard grid first"
             );
             return (word.into(), Err(Fault::Unsupported(reason)));
         }
@@ -94,7 +95,8 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// A type of voxel that can be read as it is stored: `f32`, `f64`, `i32`, `i64`, `[f32; 3]`, `[f64; 3]`.
+/// A type of voxel that can be read as it is stored: `f32`, `f64`, `i32`, `i64`, `[f32; 3]`, `[f64;
+/// 3]`.
 pub trait GridValue: Copy + Default + Send + Sync + sealed::Sealed + 'static {
     /// The word OpenVDB has for it.
     const WORD: &'static str;

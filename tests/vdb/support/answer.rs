@@ -11,7 +11,8 @@ use super::hash::{Bits, hashes, leaf_voxels};
 /// Types of voxel that are listed and refused.
 const REFUSED_TYPES: [&str; 4] = ["bool", "mask", "vec3i", "points"];
 
-/// Compares the file with the answer beside it. Says, for each grid, what was done; or what differs.
+/// Compares the file with the answer beside it. Says, for each grid, what was done; or what
+/// differs.
 pub fn check_file(path: &Path) -> Result<Vec<String>, String> {
     let json =
         std::fs::read_to_string(path.with_extension("json")).map_err(|error| error.to_string())?;
@@ -234,8 +235,8 @@ fn same<T: PartialEq + std::fmt::Debug>(what: &str, read: &T, expected: &T) -> R
     }
 }
 
-/// Equal but for the last bit, which the JSON reader does not always get right; NaN equals NaN. The hashes
-/// have compared every bit.
+/// Equal but for the last bit, which the JSON reader does not always get right; NaN equals NaN. The
+/// hashes have compared every bit.
 fn near(what: &str, read: f64, expected: f64) -> Result<(), String> {
     let is_near = (read - expected).abs() <= 4e-16 * expected.abs();
     if is_near || read == expected || (read.is_nan() && expected.is_nan()) {

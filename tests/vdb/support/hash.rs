@@ -1,5 +1,5 @@
-//! Hashes of a grid's values that do not depend on their order: sums of hashes of (coordinates, value).
-//! All arithmetic is modulo 2^64.
+//! Hashes of a grid's values that do not depend on their order: sums of hashes of (coordinates,
+//! value). All arithmetic is modulo 2^64.
 
 use photonvdb::medium::vdb::{GridValue, SparseGrid};
 
