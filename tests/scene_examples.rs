@@ -15,7 +15,7 @@ fn examples() -> Vec<PathBuf> {
 
 #[test]
 fn every_example_loads_without_a_warning() {
-    assert!(examples().len() >= 3);
+    assert!(examples().len() >= 7);
     for path in examples() {
         let scene = Scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.warnings, Vec::<String>::new(), "{}", path.display());
@@ -53,8 +53,11 @@ fn plans_read_as_a_sentence() {
         "homogeneous, isotropic, 1 point light: no grid, no majorants, no emission"
     );
     assert_eq!(
-        first_line("fog_sky.json"),
-        "homogeneous, isotropic, chromatic, 1 environment light, 1 quad light: \
-         no grid, no majorants, no emission"
+        first_line("fog_sky.toml"),
+        "homogeneous, isotropic, chromatic, 1 environment light: no grid, no majorants, no emission"
+    );
+    assert_eq!(
+        first_line("fire_smoke.toml"),
+        "density grid, anisotropic, chromatic, 1 spot light, 1 sphere light: majorants, no emission"
     );
 }

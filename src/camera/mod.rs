@@ -1,6 +1,6 @@
 //! The camera: a pinhole, with a box pixel filter.
 
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec2, DVec3, Ray};
 
 /// A pinhole camera. It may stand inside the medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,5 +42,39 @@ impl Camera {
         let v = 1.0 - 2.0 * y / self.height as f64;
         let direction = (self.forward + self.right * u + self.up * v).normalize();
         Ray::new(self.position, direction)
+    }
+
+    /// Image coordinates of a place, the inverse of [`Camera::ray`]; `None` behind the camera.
+    pub fn project(&self, place: DVec3) -> Option<DVec2> {
+        let offset = place - self.position;
+        let depth = offset.dot(self.forward);
+        if depth <= 0.0 {
+            return None;
+        }
+        let u = offset.dot(self.right) / (depth * self.right.length_squared());
+        let v = offset.dot(self.up) / (depth * self.up.length_squared());
+        let (width, height) = (self.width as f64, self.height as f64);
+        Some(DVec2::new(0.5 * (u + 1.0) * width, 0.5 * (1.0 - v) * height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projection_inverts_rays() {
+        let position = DVec3::new(2.2, 1.8, 4.2);
+        let camera =
+            Camera::look_at(position, DVec3::ZERO, DVec3::Y, 0.66, [128, 72]).expect("a camera");
+        for (x, y) in [(0.0, 0.0), (64.0, 36.0), (100.3, 7.9), (128.0, 72.0)] {
+            let ray = camera.ray(x, y);
+            let place = camera.project(ray.at(3.7)).expect("in front");
+            assert!((place - DVec2::new(x, y)).length() < 1e-10, "{place}");
+        }
+        assert_eq!(camera.project(position + DVec3::Z), None);
+        // The centre of the image looks at the point; the top of the image is up.
+        assert!((camera.ray(64.0, 36.0).direction + position.normalize()).length() < 1e-12);
+        assert!(camera.ray(64.0, 0.0).direction.y > camera.ray(64.0, 72.0).direction.y);
     }
 }

@@ -47,13 +47,14 @@ pub struct PhotonCounts {
     pub stored: u64,
 }
 
-/// Where the power of the lights went, per channel \[W\].
+/// Where the power of the photons went, per channel \[W\]: emitted = absorbed + escaped + truncated + resampled.
 #[derive(Debug, Serialize)]
 pub struct Power {
     pub emitted: [f64; 3],
     pub absorbed: [f64; 3],
     pub escaped: [f64; 3],
     pub truncated: [f64; 3],
+    pub resampled: [f64; 3],
 }
 
 /// Wall-clock time of each step \[s\].
@@ -94,10 +95,11 @@ impl From<&RenderReport> for Power {
     fn from(report: &RenderReport) -> Self {
         let power = &report.power;
         Self {
-            emitted: power.emitted,
-            absorbed: power.absorbed,
-            escaped: power.escaped,
-            truncated: power.truncated,
+            emitted: power.emitted.to_array(),
+            absorbed: power.absorbed.to_array(),
+            escaped: power.escaped.to_array(),
+            truncated: power.truncated.to_array(),
+            resampled: power.resampled.to_array(),
         }
     }
 }

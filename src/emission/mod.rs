@@ -1,4 +1,22 @@
-//! Emission: from lights to photons on their way.
+//! Emission: from lights to photons on their way into the medium.
+//!
+//! Photon i of n belongs to a light in proportion to the power that each light sends into the bounds. Its
+//! *primary sample* (place, direction, quantile of the first free flight) is drawn independently, one a
+//! stratum, or from an Owen-scrambled Sobol sequence; everything depends on (seed, i) alone.
+
+pub mod aim;
+mod cone_table;
+mod emitter;
+mod sobol;
+mod strata;
+
+pub use emitter::Emitter;
+pub use sobol::Sobol;
+pub use strata::{Interval, MAX_DIMENSIONS, Strata};
+
+use crate::light::Light;
+use crate::math::{Random, Ray, Rgb, Stream, uniform};
+use crate::medium::Bounds;
 
 /// How photons are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,4 +27,150 @@ pub enum EmissionKind {
     Stratified,
     /// Owen-scrambled Sobol points.
     Sobol,
+}
+
+/// A photon that has left its light.
+#[derive(Clone, Debug)]
+pub struct EmittedPhoton {
+    /// From the light, or, for light from infinitely far, from before the medium.
+    pub ray: Ray,
+    /// \[W\], already divided by the number of photons.
+    pub power: Rgb,
+    /// Quantile of the first free flight in \[0, 1); `None` to draw it like all others.
+    pub flight_quantile: Option<f64>,
+    /// The stream of the photon's further path.
+    pub random: Random,
+}
+
+/// All photons of one pass.
+#[derive(Debug)]
+pub struct Emission<'a> {
+    seed: u64,
+    count: u64,
+    lights: Vec<LightShare<'a>>,
+}
+
+/// The photons of one light: `first..first + count`.
+#[derive(Debug)]
+struct LightShare<'a> {
+    emitter: Emitter<'a>,
+    first: u64,
+    count: u64,
+    sampler: PrimarySampler,
+}
+
+/// Where primary samples come from.
+#[derive(Debug)]
+enum PrimarySampler {
+    Random,
+    Stratified(Strata),
+    Sobol(Sobol),
+}
+
+impl<'a> Emission<'a> {
+    /// Prepares `count` photons from the lights into the bounds. `mean_free_path` \[m\] is a typical one: it shapes
+    /// the strata, nothing else.
+    pub fn new(
+        lights: &'a [Light],
+        bounds: &'a Bounds,
+        mean_free_path: f64,
+        kind: EmissionKind,
+        count: u64,
+        seed: u64,
+    ) -> Self {
+        let emitters: Vec<Emitter> = lights
+            .iter()
+            .map(|light| Emitter::new(light, bounds))
+            .filter(|emitter| emitter.power_estimate() > 0.0)
+            .collect();
+        let powers: Vec<f64> = emitters.iter().map(Emitter::power_estimate).collect();
+        let mut first = 0;
+        let lights: Vec<LightShare> = emitters
+            .into_iter()
+            .zip(share_out(count, &powers))
+            .enumerate()
+            .map(|(index, (emitter, count))| {
+                let sampler = match kind {
+                    EmissionKind::Random => PrimarySampler::Random,
+                    EmissionKind::Stratified => {
+                        let extents = emitter.extents(mean_free_path);
+                        PrimarySampler::Stratified(Strata::new(count, &extents))
+                    }
+                    EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
+                };
+                let share = LightShare { emitter, first, count, sampler };
+                first += count;
+                share
+            })
+            .collect();
+        Self { seed, count: first, lights }
+    }
+
+    /// Photons of the pass: the count asked for, or 0 where no light reaches the bounds.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Photon `index`, below [`Emission::count`]. `None` where the light sends nothing along the sample,
+    /// as outside a spot's cone: the photon counts as emitted with no power.
+    pub fn photon(&self, index: u64) -> Option<EmittedPhoton> {
+        let light = self.lights.iter().rev().find(|light| light.first <= index)?;
+        let mut random = Stream::Photon.random(self.seed, index);
+        let sample = light.sampler.sample(index - light.first, &mut random);
+        let [a, b, c, d, flight] = sample;
+        let (ray, power) = light.emitter.sample_ray([a, b, c, d])?;
+        let flight_quantile = (!matches!(light.sampler, PrimarySampler::Random)).then_some(flight);
+        Some(EmittedPhoton { ray, power: power / light.count as f64, flight_quantile, random })
+    }
+}
+
+impl PrimarySampler {
+    /// Coordinates 0..4 lead from the light, the last is the first flight's quantile.
+    fn sample(&self, index: u64, random: &mut Random) -> [f64; MAX_DIMENSIONS] {
+        match self {
+            Self::Random => std::array::from_fn(|_| uniform(random)),
+            Self::Stratified(strata) => strata.cell(index).map(|i| i.at(uniform(random))),
+            Self::Sobol(sobol) => std::array::from_fn(|dimension| {
+                let bits = f64::from(sobol.coordinate(index as u32, dimension));
+                ((bits + uniform(random)) / 4_294_967_296.0).min(1.0 - f64::EPSILON / 2.0)
+            }),
+        }
+    }
+}
+
+/// Divides `count` in proportion to positive `weights`, none left without one if there are enough.
+fn share_out(count: u64, weights: &[f64]) -> Vec<u64> {
+    let total: f64 = weights.iter().sum();
+    let (mut sum, mut given) = (0.0, 0);
+    let mut shares: Vec<u64> = weights
+        .iter()
+        .map(|weight| {
+            sum += weight / total;
+            let end = ((sum * count as f64).round() as u64).min(count).max(given);
+            let share = end - given;
+            given = end;
+            share
+        })
+        .collect();
+    while let (Some(poor), Some(rich)) = (
+        shares.iter().position(|&share| share == 0),
+        (0..shares.len()).max_by_key(|&i| shares[i]).filter(|&i| shares[i] > 1),
+    ) {
+        shares[poor] += 1;
+        shares[rich] -= 1;
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn photons_are_shared_by_power_and_none_is_lost() {
+        assert_eq!(share_out(10, &[1.0, 4.0]), [2, 8]);
+        assert_eq!(share_out(10, &[1e-9, 1.0, 1.0]), [1, 5, 4]);
+        assert_eq!(share_out(2, &[1.0, 1.0, 1.0]).iter().sum::<u64>(), 2);
+        assert_eq!(share_out(1_000_003, &[0.3, 0.3, 0.4]).iter().sum::<u64>(), 1_000_003);
+    }
 }

@@ -1,21 +1,189 @@
-//! Estimates from the photon map.
+//! Estimates from the photon map: power density, fluence and in-scattered radiance, from the k nearest photons.
+//!
+//! With r_k the distance of the k-th photon and V the part of that ball inside the medium, the estimate of power
+//! density is the photons' power, the k-th counted as the [`Divisor`] says, over V (Jensen and Christensen
+//! 1998; the numerators k, k - 1 and k - 1/2 are the thesis's chapters 3 and 4).
+//!
+//! Fluence divides each photon by sigma_t at its own place. In a grid sigma_t may vanish within the ball, where
+//! no photon can be; photons are therefore weighted by h(sigma_t) / sigma_t with h = min(sigma_t, c), and V
+//! becomes the integral of h over the ball: every h gives the same mean in a constant fluence, and this one
+//! bounds the weights. c is sigma_t at the query.
 
-/// The numerator of the k-nearest estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Divisor {
-    /// All k photons: too high by 1/(k-1) in a random map.
-    K,
-    /// Leaves out the k-th photon: unbiased in a random map.
-    KMinus1,
-    /// Half of the k-th photon.
-    KMinusHalf,
+mod divisor;
+mod kernel;
+
+pub use divisor::Divisor;
+pub use kernel::Kernel;
+
+use std::num::NonZeroUsize;
+
+use crate::map::{Nearest, NearestPhotons, PhotonMap};
+use crate::math::{Ball, DVec3, Rgb};
+use crate::medium::{Extinction, ISOTROPIC, Medium};
+
+/// How the map is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimateOptions {
+    /// Photons of one estimate.
+    pub k: NonZeroUsize,
+    /// How the k-th photon counts.
+    pub divisor: Divisor,
+    /// Weight by distance.
+    pub kernel: Kernel,
+    /// Largest radius \[m\]. Where fewer than k photons are within, all of them count, over that ball.
+    pub max_radius: f64,
 }
 
-/// The weight of a photon by its distance from the query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
-    /// The same within the ball.
-    Constant,
-    /// Falls as 1 - (r / r_k)^2.
-    Epanechnikov,
+/// An estimate at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The quantity estimated, per channel.
+    pub value: Rgb,
+    /// Radius of the kernel \[m\].
+    pub radius: f64,
+    /// Photons found.
+    pub photon_count: usize,
+}
+
+/// An estimate of the light scattered towards a direction, per sigma_s \[W/(m^2 sr)\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InScattered {
+    /// From photons that had not scattered before, where the map keeps orders; else 0.
+    pub single: Rgb,
+    /// From all others.
+    pub multiple: Rgb,
+    /// Radius of the kernel \[m\].
+    pub radius: f64,
+    /// Photons found.
+    pub photon_count: usize,
+}
+
+/// Reads a photon map, from one thread.
+pub struct Estimator<'a, E> {
+    medium: &'a Medium,
+    extinction: &'a E,
+    finder: NearestPhotons<'a>,
+    options: EstimateOptions,
+}
+
+impl<'a, E: Extinction> Estimator<'a, E> {
+    /// A reader of `map`, whose photons were traced in `medium` with that `extinction`.
+    pub fn new(
+        medium: &'a Medium,
+        extinction: &'a E,
+        map: &'a PhotonMap,
+        options: EstimateOptions,
+    ) -> Self {
+        Self { medium, extinction, finder: NearestPhotons::new(map), options }
+    }
+
+    /// Power density at a place \[W/m^3\].
+    pub fn power_density(&mut self, place: DVec3) -> Estimate {
+        let Self { medium, finder, options, .. } = self;
+        let map = finder.map();
+        let nearest = finder.find(place, options.k, options.max_radius);
+        let radius = f64::from(nearest.radius) * map.frame().unit;
+        let volume = options.kernel.mass(medium.bounds.overlap(Ball { center: place, radius }));
+        let mut sum = Rgb::ZERO;
+        for_weighted(&nearest, *options, |photon, weight| sum += rgb(map.power(photon)) * weight);
+        Estimate { value: over(sum, volume), radius, photon_count: nearest.photons.len() }
+    }
+
+    /// Fluence at a place \[W/m^2\].
+    pub fn fluence(&mut self, place: DVec3) -> Estimate {
+        let gathered = self.gather_fluence(place, 0.5, |_| 1.0);
+        let value = gathered.single + gathered.multiple;
+        Estimate { value, radius: gathered.radius, photon_count: gathered.photon_count }
+    }
+
+    /// Light scattered at a place into a direction of travel, per sigma_s: the phase-weighted fluence \[W/(m^2 sr)\].
+    /// `turn` in \[0, 1) turns the quadrature of the ball.
+    pub fn in_scattered(&mut self, place: DVec3, direction: DVec3, turn: f64) -> InScattered {
+        let phase = self.medium.phase;
+        let map = self.finder.map();
+        self.gather_fluence(place, turn, |photon| match map.direction(photon) {
+            Some(incoming) => phase.density(incoming.dot(direction)),
+            None => ISOTROPIC,
+        })
+    }
+
+    /// Sums `factor` times fluence over the photons about a place.
+    fn gather_fluence(
+        &mut self,
+        place: DVec3,
+        turn: f64,
+        factor: impl Fn(u32) -> f64,
+    ) -> InScattered {
+        let Self { medium, extinction, finder, options } = self;
+        let map = finder.map();
+        let nearest = finder.find(place, options.k, options.max_radius);
+        let radius = f64::from(nearest.radius) * map.frame().unit;
+        let mut gathered =
+            InScattered { radius, photon_count: nearest.photons.len(), ..InScattered::default() };
+        if nearest.photons.is_empty() {
+            return gathered;
+        }
+        let sigma_t = extinction.sigma_t(place);
+        let ceiling =
+            if E::IS_UNIFORM { sigma_t } else { Rgb::splat(ceiling(map, &nearest, sigma_t)) };
+        for_weighted(&nearest, *options, |photon, weight| {
+            let clipped = match map.sigma_t(photon) {
+                Some(own) => weight * (ceiling.x / f64::from(own)).min(1.0),
+                None => weight,
+            };
+            let light = rgb(map.power(photon)) * (clipped * factor(photon));
+            match map.order(photon) {
+                Some(0) => gathered.single += light,
+                _ => gathered.multiple += light,
+            }
+        });
+        let ball = Ball { center: place, radius };
+        let integral = extinction.ball_integral(&medium.bounds, ball, ceiling.x, turn);
+        let mass = options.kernel.mass(integral);
+        let per_fluence = |sum: Rgb| {
+            let channel = |c: usize| over_scalar(sum[c], mass * ceiling[c]);
+            Rgb::new(channel(0), channel(1), channel(2))
+        };
+        gathered.single = per_fluence(gathered.single);
+        gathered.multiple = per_fluence(gathered.multiple);
+        gathered
+    }
+}
+
+/// Where h levels off: sigma_t at the query, or, where there is none, the largest of the photons'.
+fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
+    if sigma_t.x > 0.0 {
+        return sigma_t.x;
+    }
+    let own = nearest.photons.iter().filter_map(|n| map.sigma_t(n.photon));
+    own.fold(0.0, |largest, s| f64::from(s).max(largest))
+}
+
+/// Calls `add` with each photon and its weight: the kernel's, and, for the k-th, the divisor's.
+#[inline]
+fn for_weighted(nearest: &Nearest, options: EstimateOptions, mut add: impl FnMut(u32, f64)) {
+    let inverse = 1.0 / (f64::from(nearest.radius) * f64::from(nearest.radius));
+    let Some((last, inner)) = nearest.photons.split_last() else { return };
+    let kernel = options.kernel;
+    for neighbor in inner {
+        add(neighbor.photon, kernel.weight(f64::from(neighbor.distance_squared) * inverse));
+    }
+    let share = if nearest.complete { options.divisor.last_share(options.k) } else { 1.0 };
+    if share > 0.0 {
+        let weight = kernel.weight(f64::from(last.distance_squared) * inverse);
+        add(last.photon, weight * share);
+    }
+}
+
+fn rgb(power: [f32; 3]) -> Rgb {
+    Rgb::new(f64::from(power[0]), f64::from(power[1]), f64::from(power[2]))
+}
+
+/// `sum / mass`, 0 where there is no mass.
+fn over(sum: Rgb, mass: f64) -> Rgb {
+    if mass > 0.0 { sum / mass } else { Rgb::ZERO }
+}
+
+fn over_scalar(sum: f64, mass: f64) -> f64 {
+    if mass > 0.0 { sum / mass } else { 0.0 }
 }

@@ -1,12 +1,17 @@
-//! Lights: what sends light into the medium.
+//! Lights: what sends light into the medium, and how strongly each place is lit.
 //!
-//! Area lights and environments are seen by the camera too; no light casts a shadow.
+//! Area lights and environments are seen by the camera too. No light casts a shadow: the medium is all
+//! that attenuates.
 
+mod area;
 mod environment;
+mod punctual;
 
-pub use environment::{Environment, EnvironmentImage};
+pub use area::{QuadLight, SphereLight};
+pub use environment::{DirectionSample, Environment, EnvironmentImage};
+pub use punctual::{DirectionalLight, PointLight, SpotLight};
 
-use crate::math::{DVec3, Rgb};
+use crate::math::{DVec2, DVec3, Ray, Rgb};
 
 /// A light of the scene.
 #[derive(Debug)]
@@ -25,60 +30,51 @@ pub enum Light {
     Sphere(SphereLight),
 }
 
-/// See [`Light::Point`].
+/// Light that arrives at a place, before the medium on its way attenuates it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointLight {
-    /// \[m\]
-    pub position: DVec3,
-    /// \[W/sr\]
-    pub intensity: Rgb,
-}
-
-/// See [`Light::Spot`]. Full intensity within `falloff_angle` of the axis, then linear in the angle down to 0
-/// at `cone_angle`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpotLight {
-    /// \[m\]
-    pub position: DVec3,
-    /// Unit direction of the axis.
-    pub axis: DVec3,
-    /// On the axis \[W/sr\].
-    pub intensity: Rgb,
-    /// Half-angle of the cone, in (0, pi) \[rad\].
-    pub cone_angle: f64,
-    /// In \[0, `cone_angle`\] \[rad\].
-    pub falloff_angle: f64,
-}
-
-/// See [`Light::Directional`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionalLight {
-    /// Unit direction of travel.
+pub struct Illumination {
+    /// Unit direction from the place to the light.
     pub direction: DVec3,
-    /// On a plane facing the light \[W/m^2\].
+    /// Distance to the light \[m\], infinite for directional and environment lights.
+    pub distance: f64,
+    /// Power per area facing the light \[W/m^2\]; for an area light, radiance times solid angle.
     pub irradiance: Rgb,
 }
 
-/// See [`Light::Quad`]: radiates to the side that `edge_u` x `edge_v` points to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadLight {
-    /// One corner \[m\].
-    pub corner: DVec3,
-    /// \[m\]
-    pub edge_u: DVec3,
-    /// \[m\]
-    pub edge_v: DVec3,
-    /// \[W/(m^2 sr)\]
-    pub radiance: Rgb,
-}
+impl Light {
+    /// Where a point light or spot stands: its light falls with the squared distance from there, without
+    /// bound.
+    pub fn position(&self) -> Option<DVec3> {
+        match self {
+            Self::Point(light) => Some(light.position),
+            Self::Spot(light) => Some(light.position),
+            _ => None,
+        }
+    }
 
-/// See [`Light::Sphere`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SphereLight {
-    /// \[m\]
-    pub center: DVec3,
-    /// \[m\]
-    pub radius: f64,
-    /// \[W/(m^2 sr)\]
-    pub radiance: Rgb,
+    /// The light that reaches `place` from the light, or from one sampled direction towards it if it has
+    /// extent (`u` in the unit square). `None` where none does; environments, whose light is sampled
+    /// together with the phase function, answer `None` always.
+    pub fn sample_illumination(&self, place: DVec3, u: DVec2) -> Option<Illumination> {
+        match self {
+            Self::Point(light) => light.illumination(place),
+            Self::Spot(light) => light.illumination(place),
+            Self::Directional(light) => Some(light.illumination()),
+            Self::Environment(_) => None,
+            Self::Quad(light) => light.sample_illumination(place, u),
+            Self::Sphere(light) => light.sample_illumination(place, u),
+        }
+    }
+
+    /// Radiance seen along a ray, and the distance it comes from \[m\]: infinite for environments.
+    pub fn seen_along(&self, ray: &Ray) -> Option<(f64, Rgb)> {
+        match self {
+            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => None,
+            Self::Environment(environment) => {
+                Some((f64::INFINITY, environment.radiance(ray.direction)))
+            }
+            Self::Quad(light) => light.seen_along(ray),
+            Self::Sphere(light) => light.seen_along(ray),
+        }
+    }
 }

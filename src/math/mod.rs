@@ -5,10 +5,13 @@
 
 mod random;
 mod ray;
+mod spherical_triangle;
+pub mod square_maps;
 
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
 pub use random::{Random, Stream, uniform};
 pub use ray::{Ball, Frame, Ray, Span};
+pub use spherical_triangle::SphericalTriangle;
 
 /// Linear RGB (Rec.709 primaries): a coefficient, a power, or a radiance per channel.
 pub type Rgb = DVec3;

@@ -7,14 +7,17 @@
 mod bounds;
 pub mod grid;
 mod homogeneous;
+mod overlap;
 mod phase;
 mod profile;
+
 pub mod vdb;
 
-pub use bounds::{Bounds, Parallelepiped};
+pub use bounds::{Bounds, Face, Parallelepiped};
 pub use grid::GridExtinction;
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
-pub use phase::Phase;
+pub use overlap::BallIntegral;
+pub use phase::{ISOTROPIC, Phase};
 pub use profile::{ProfileKnot, RayProfile};
 
 use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span};
@@ -65,9 +68,10 @@ pub trait Extinction: Sync {
     /// Fills `profile` with the optical depth along the span, as a function of distance.
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile);
 
-    /// Integral over the ball of min(sigma_t, `ceiling`), for the normalisation of kernels, where
-    /// nothing lies outside `bounds`. `phase` in \[0, 1) turns the quadrature points of grids.
-    fn ball_extinction(&self, bounds: &Bounds, ball: Ball, ceiling: f64, phase: f64) -> f64;
+    /// Integrals over the ball of min(sigma_t / `ceiling`, 1), for the normalisation of kernels: in a uniform
+    /// medium the volume inside `bounds`, whatever the ceiling. `turn` in \[0, 1) turns the quadrature
+    /// points of grids.
+    fn ball_integral(&self, bounds: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral;
 }
 
 /// The end of a photon's flight.

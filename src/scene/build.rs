@@ -26,19 +26,14 @@ pub(super) fn medium(
             phase: phase.phase(),
         }),
         MediumSection::Vdb { file, density, density_scale, albedo, phase, transform } => {
-            let grid = volume::read(
+            let (bounds, extinction) = volume::read(
                 &directory.join(file),
                 density.as_deref(),
                 *density_scale,
                 transform.affine(),
                 warnings,
             )?;
-            Ok(Medium {
-                bounds: grid.bounds,
-                extinction: MediumExtinction::Grid(Box::new(grid.extinction)),
-                albedo: *albedo,
-                phase: phase.phase(),
-            })
+            Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
         }
     }
 }

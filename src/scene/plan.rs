@@ -120,7 +120,7 @@ fn mean_chord(bounds: &Bounds) -> f64 {
             ])
         }
         Bounds::Sphere { radius, .. } => 4.0 / 3.0 * radius,
-        Bounds::Parallelepiped(shape) => of_edges(shape.edges),
+        Bounds::Parallelepiped(shape) => of_edges(shape.edges()),
         Bounds::Infinite => f64::INFINITY,
     }
 }

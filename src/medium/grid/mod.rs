@@ -1,5 +1,23 @@
 //! Extinction from a density grid: sigma_t = density_scale * density, trilinear between voxels.
+//!
+//! [`DensityGrid`] holds the voxels of a [`SparseGrid`](crate::medium::vdb::SparseGrid) as bricks with aprons below a
+//! sparse index. Rays walk its blocks: delta tracking with one majorant a block, or voxel cells for exact
+//! optical depths. [`GridExtinction`] places a grid in the world.
 
-/// Extinction of a density grid in world space.
-#[derive(Debug)]
-pub struct GridExtinction {}
+mod active_voxels;
+mod ball;
+mod block_walk;
+mod brick_atlas;
+mod brick_index;
+mod cell_walk;
+pub(super) mod cubic;
+mod delta_tracking;
+mod density_grid;
+mod extinction;
+mod index_builder;
+mod slot;
+mod trilinear;
+mod voxel_source;
+
+pub use density_grid::{DensityGrid, GridStatistics};
+pub use extinction::GridExtinction;

@@ -89,8 +89,17 @@ impl<'a> Table<'a> {
     /// The value of `key`, if the file gives it.
     pub fn get<T: FromNode>(&self, key: &str) -> Result<Option<T>, Problem> {
         let Some(node) = self.find(key) else { return Ok(None) };
-        let mismatch = || format!("expected {}, found {}", T::EXPECTED, node.value);
-        T::from_node(node).map(Some).ok_or_else(|| self.problem(key, mismatch()))
+        T::from_node(node).map(Some).ok_or_else(|| {
+            let value = &node.value;
+            let text = if is_extreme(value) {
+                format!(
+                    "numbers must be finite and of magnitude up to {MAX_MAGNITUDE:e}, found {value}"
+                )
+            } else {
+                format!("expected {}, found {value}", T::EXPECTED)
+            };
+            self.problem(key, text)
+        })
     }
 
     /// The value of `key`, or the default.
@@ -148,6 +157,16 @@ impl<'a> Table<'a> {
     }
 }
 
+/// Whether a number of the value is NaN, infinite or too large.
+fn is_extreme(value: &Value) -> bool {
+    match value {
+        Value::Float(number) => number.is_nan() || number.abs() > MAX_MAGNITUDE,
+        Value::Integer(number) => number.unsigned_abs() as f64 > MAX_MAGNITUDE,
+        Value::List(items) => items.iter().any(|item| is_extreme(&item.value)),
+        _ => false,
+    }
+}
+
 fn quoted<T>(words: &[(&str, T)]) -> String {
     words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ")
 }
@@ -164,15 +183,14 @@ fn unknown_key(key: &str, known: &[&str]) -> String {
 }
 
 impl FromNode for f64 {
-    const EXPECTED: &'static str = "a finite number of magnitude up to 1e30";
+    const EXPECTED: &'static str = "a number";
     fn from_node(node: &Node) -> Option<Self> {
         let number = match node.value {
             Value::Integer(value) => value as f64,
             Value::Float(value) => value,
             _ => return None,
         };
-        // A NaN fails the comparison too.
-        (number.abs() <= MAX_MAGNITUDE).then_some(number)
+        (!is_extreme(&node.value)).then_some(number)
     }
 }
 
@@ -221,14 +239,14 @@ impl FromNode for [u64; 2] {
 }
 
 impl FromNode for [f64; 16] {
-    const EXPECTED: &'static str = "a list of 16 finite numbers";
+    const EXPECTED: &'static str = "a list of 16 numbers";
     fn from_node(node: &Node) -> Option<Self> {
         list(node)
     }
 }
 
 impl FromNode for DVec3 {
-    const EXPECTED: &'static str = "a list of 3 finite numbers of magnitude up to 1e30";
+    const EXPECTED: &'static str = "a list of 3 numbers";
     fn from_node(node: &Node) -> Option<Self> {
         list(node).map(DVec3::from_array)
     }
@@ -239,7 +257,7 @@ impl FromNode for DVec3 {
 pub(super) struct OneOrThree(pub Rgb);
 
 impl FromNode for OneOrThree {
-    const EXPECTED: &'static str = "a finite number or a list of 3, of magnitude up to 1e30";
+    const EXPECTED: &'static str = "a number or a list of 3 numbers";
     fn from_node(node: &Node) -> Option<Self> {
         let one = f64::from_node(node).map(DVec3::splat);
         one.or_else(|| DVec3::from_node(node)).map(Self)

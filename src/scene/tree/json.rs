@@ -7,8 +7,11 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use super::{Node, Origin, SyntaxError, Value};
 
 pub(super) fn parse(text: &str) -> Result<Node, SyntaxError> {
-    serde_json::from_str(text)
-        .map_err(|error| SyntaxError { line: error.line(), problem: error.to_string() })
+    serde_json::from_str(text).map_err(|error| {
+        let message = error.to_string();
+        let cause = message.split(" at line ").next().unwrap_or(&message);
+        SyntaxError { line: error.line(), problem: format!("{cause} (column {})", error.column()) }
+    })
 }
 
 impl<'de> Deserialize<'de> for Node {

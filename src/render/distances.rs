@@ -1,0 +1,174 @@
+//! Distances along a ray at which to look for scattered light.
+//!
+//! Two densities cover all cases. By *transmittance*: p(t) = sigma_t T(t) / (1 - T(end)), inverted from the ray's
+//! profile, follows what the camera sees (for a chromatic medium, the mean of its channels' densities).
+//! *Equi-angular* (Kulla and Fajardo 2012): p(t) = D / (dtheta (D^2 + (t - delta)^2)) follows the inverse square of the
+//! distance to a light at distance D from the ray, and removes its peak.
+
+use crate::math::{DVec3, Ray, Rgb, Span, exp};
+use crate::medium::RayProfile;
+
+/// Sampling by transmittance along one ray.
+pub struct ByTransmittance<'a> {
+    profile: &'a RayProfile,
+    /// 1 - T(end) per channel.
+    opacity: Rgb,
+    /// Channels that differ: 1 if the medium is grey, else 3.
+    channels: usize,
+}
+
+impl<'a> ByTransmittance<'a> {
+    /// `None` where the span has no extinction.
+    pub fn new(profile: &'a RayProfile, span: Span) -> Option<Self> {
+        let depth = profile.optical_depth(span.end);
+        let opacity = Rgb::new(-(-depth.x).exp_m1(), -(-depth.y).exp_m1(), -(-depth.z).exp_m1());
+        let channels = if depth.x == depth.y && depth.y == depth.z { 1 } else { 3 };
+        (opacity.max_element() > 0.0).then_some(Self { profile, opacity, channels })
+    }
+
+    /// The distance at quantile `u`; `pick` in \[0, 1) chooses the channel of a chromatic medium.
+    pub fn sample_distance(&self, u: f64, pick: f64) -> f64 {
+        let channel = self.pick_channel(pick);
+        let depth = -(-u * self.opacity[channel]).ln_1p();
+        self.profile.distance_at(depth, channel)
+    }
+
+    /// Density of [`Self::sample_distance`] \[1/m\], where transmittance and sigma_t are as given.
+    pub fn pdf_distance(&self, transmittance: Rgb, sigma_t: Rgb) -> f64 {
+        let channel = |c: usize| {
+            if self.opacity[c] > 0.0 { transmittance[c] * sigma_t[c] / self.opacity[c] } else { 0.0 }
+        };
+        match self.channels {
+            1 => channel(0),
+            _ => {
+                let visible = (0..3).filter(|&c| self.opacity[c] > 0.0).count();
+                (0..3).map(channel).sum::<f64>() / visible as f64
+            }
+        }
+    }
+
+    /// For `count` samples: T(t) sigma_t(t) / (count pdf(t)) per channel, in the form that is exact for grey media.
+    pub fn scattering_weight(&self, distance: f64, sigma_t: Rgb, count: f64) -> Rgb {
+        if self.channels == 1 {
+            return self.opacity / count;
+        }
+        let transmittance = exp(-self.profile.optical_depth(distance));
+        transmittance * sigma_t / (count * self.pdf_distance(transmittance, sigma_t))
+    }
+
+    /// One of the channels that are not transparent.
+    fn pick_channel(&self, pick: f64) -> usize {
+        if self.channels == 1 {
+            return 0;
+        }
+        let visible: [bool; 3] = std::array::from_fn(|c| self.opacity[c] > 0.0);
+        let count = visible.iter().filter(|v| **v).count();
+        let chosen = ((pick * count as f64) as usize).min(count - 1);
+        (0..3).filter(|&c| visible[c]).nth(chosen).unwrap_or(0)
+    }
+}
+
+/// Equi-angular sampling about a position.
+pub struct EquiAngular {
+    span: Span,
+    /// Distance of the ray's nearest point to the position.
+    delta: f64,
+    /// Distance of the position from the ray \[m\].
+    offset: f64,
+    /// Angle of the span's start, and the angle that the span fills, seen from the position.
+    first: f64,
+    angle: f64,
+}
+
+impl EquiAngular {
+    /// Sampling of the part `span` of a ray about `position`.
+    pub fn new(ray: &Ray, span: Span, position: DVec3) -> Self {
+        let to_position = position - ray.origin;
+        let delta = to_position.dot(ray.direction);
+        // A ray through the light itself would see it without bound: the floor is far below any pixel.
+        let floor = 1e-12 * (span.length().min(1e300) + delta.abs()) + f64::MIN_POSITIVE;
+        let offset = (to_position - ray.direction * delta).length().max(floor);
+        let (a, b) = (span.start - delta, span.end - delta);
+        let first = a.atan2(offset);
+        // One arctangent of the difference, which does not cancel for a far light.
+        let angle = if b.is_finite() {
+            (offset * (b - a)).atan2(offset * offset + a * b)
+        } else {
+            std::f64::consts::FRAC_PI_2 - first
+        };
+        Self { span, delta, offset, first, angle }
+    }
+
+    /// The distance at quantile `u`.
+    pub fn sample_distance(&self, u: f64) -> f64 {
+        // tan(first + x) by the addition theorem: exact also where the angle is a rounding of `first`.
+        let (tan_first, tan_step) = (self.first.tan(), (u * self.angle).tan());
+        let step = self.offset * (tan_step * (1.0 + tan_first * tan_first))
+            / (1.0 - tan_first * tan_step);
+        let from_start = self.span.start + step;
+        let distance = if from_start.is_finite() && self.first.abs() < 1.5 {
+            from_start
+        } else {
+            self.delta + self.offset * (self.first + u * self.angle).tan()
+        };
+        distance.clamp(self.span.start, self.span.end)
+    }
+
+    /// Density of [`Self::sample_distance`] \[1/m\].
+    pub fn pdf_distance(&self, distance: f64) -> f64 {
+        let along = distance - self.delta;
+        self.offset / (self.angle * (self.offset * self.offset + along * along))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pdf is the derivative of the quantile, and spans the span, for near, far and grazing lights.
+    #[test]
+    fn equi_angular_distances_follow_their_density() {
+        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
+        let span = Span::new(0.5, 3.0);
+        for position in [
+            DVec3::new(0.3, 0.0, 1.0),
+            DVec3::new(1e-7, 0.0, 2.0),
+            DVec3::new(1e7, 0.0, -1e7),
+            DVec3::new(0.2, 0.0, -40.0),
+            DVec3::new(0.0, 0.01, 900.0),
+        ] {
+            let sampling = EquiAngular::new(&ray, span, position);
+            assert!((sampling.sample_distance(0.0) - span.start).abs() < 1e-9, "{position}");
+            assert!((sampling.sample_distance(1.0) - span.end).abs() < 1e-6, "{position}");
+            for step in 1..50 {
+                let u = f64::from(step) / 50.0;
+                let h = 1e-5;
+                let (low, high) = (sampling.sample_distance(u - h), sampling.sample_distance(u + h));
+                let density = 2.0 * h / (high - low);
+                let middle = sampling.sample_distance(u);
+                let ratio = density / sampling.pdf_distance(middle);
+                assert!((ratio - 1.0).abs() < 2e-3, "{position} at {u}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn transmittance_sampling_inverts_each_channel() {
+        let mut profile = RayProfile::default();
+        let span = Span::new(1.0, 4.0);
+        let sigma_t = Rgb::new(0.2, 1.0, 5.0);
+        profile.set_uniform(span, sigma_t);
+        let sampling = ByTransmittance::new(&profile, span).unwrap();
+        // Mean of the weights over the mixture is 1 - T(end) per channel.
+        let mut sum = Rgb::ZERO;
+        let steps = 30_000;
+        for i in 0..steps {
+            let u = (f64::from(i) + 0.5) / f64::from(steps);
+            let pick = (u * 7919.0).fract();
+            let distance = sampling.sample_distance(u, pick);
+            sum += sampling.scattering_weight(distance, sigma_t, f64::from(steps));
+        }
+        let exact = Rgb::ONE - exp(-sigma_t * 3.0);
+        assert!((sum / exact - Rgb::ONE).abs().max_element() < 1e-2, "{sum} {exact}");
+    }
+}

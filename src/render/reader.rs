@@ -1,0 +1,152 @@
+//! Reading a lit medium along rays.
+
+use crate::estimate::{Estimate, Estimator};
+use crate::math::{DVec3, Random, Ray, Rgb, Span, exp, uniform};
+use crate::medium::{Extinction, RayProfile};
+use crate::render::distances::ByTransmittance;
+use crate::render::single_scatter::ScatteringRay;
+use crate::scene::Scene;
+
+/// Light along a ray, by its way through the medium.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RayRadiance {
+    /// Scattered once \[W/(m^2 sr)\].
+    pub single_scatter: Rgb,
+    /// Scattered twice or more.
+    pub multiple_scatter: Rgb,
+    /// From lights seen directly, attenuated.
+    pub emission: Rgb,
+    /// Transmittance of the ray's whole part in the medium.
+    pub transmittance: Rgb,
+    /// Photon-map queries made.
+    pub query_count: usize,
+    /// Photons found, summed over queries.
+    pub photon_count: usize,
+    /// Kernel radii, summed over queries \[m\].
+    pub radius_sum: f64,
+}
+
+/// Reads a lit medium, from one thread: light along rays, fluence and power density at places.
+pub struct Reader<'a, E> {
+    scene: &'a Scene,
+    extinction: &'a E,
+    estimator: Estimator<'a, E>,
+    profile: RayProfile,
+}
+
+impl<'a, E: Extinction> Reader<'a, E> {
+    /// A reader.
+    pub fn new(scene: &'a Scene, extinction: &'a E, estimator: Estimator<'a, E>) -> Self {
+        Self { scene, extinction, estimator, profile: RayProfile::default() }
+    }
+
+    /// Fluence at a place \[W/m^2\], of the photons in the map: scattered light, unless the scene asks for
+    /// everything from photons.
+    pub fn fluence(&mut self, place: DVec3) -> Estimate {
+        self.estimator.fluence(place)
+    }
+
+    /// Power density at a place \[W/m^3\], of the photons in the map.
+    pub fn power_density(&mut self, place: DVec3) -> Estimate {
+        self.estimator.power_density(place)
+    }
+
+    /// Light that travels back along a ray from up to `max_distance` \[m\] ahead. `skipped` names lights whose
+    /// single scattering is computed elsewhere.
+    pub fn radiance(
+        &mut self,
+        ray: &Ray,
+        max_distance: f64,
+        skipped: &[usize],
+        random: &mut Random,
+    ) -> RayRadiance {
+        let inside = self.scene.medium.bounds.intersect(ray);
+        let Some(span) = inside.and_then(|s| s.intersect(Span::new(0.0, max_distance))) else {
+            return RayRadiance {
+                emission: self.unscattered(ray, max_distance, |_| Rgb::ONE),
+                transmittance: Rgb::ONE,
+                ..RayRadiance::default()
+            };
+        };
+        self.extinction.profile(ray, span, &mut self.profile);
+        let profile = &self.profile;
+        let mut radiance = RayRadiance {
+            emission: self.unscattered(ray, max_distance, |distance| {
+                exp(-profile.optical_depth(distance.clamp(span.start, span.end)))
+            }),
+            transmittance: exp(-profile.optical_depth(span.end)),
+            ..RayRadiance::default()
+        };
+        if !self.scene.render.photons_only {
+            radiance.single_scatter = self.single_scatter(ray, span, skipped, random);
+        }
+        self.add_from_photons(ray, span, random, &mut radiance);
+        radiance
+    }
+
+    /// Single scattering alone of one light, from `samples` distances.
+    pub fn single_scatter_of(
+        &mut self,
+        ray: &Ray,
+        light: usize,
+        samples: usize,
+        random: &mut Random,
+    ) -> Rgb {
+        let Some(span) = self.scene.medium.bounds.intersect(ray) else { return Rgb::ZERO };
+        self.extinction.profile(ray, span, &mut self.profile);
+        self.scattering_ray(ray, span).single_scatter(&self.scene.lights[light], samples, random)
+    }
+
+    fn scattering_ray<'r>(&'r self, ray: &'r Ray, span: Span) -> ScatteringRay<'r, E> {
+        let (medium, profile) = (&self.scene.medium, &self.profile);
+        ScatteringRay { medium, extinction: self.extinction, ray, span, profile }
+    }
+
+    fn single_scatter(&self, ray: &Ray, span: Span, skipped: &[usize], random: &mut Random) -> Rgb {
+        let scattering = self.scattering_ray(ray, span);
+        let samples = self.scene.render.light_samples;
+        let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
+        lights.map(|(_, light)| scattering.single_scatter(light, samples, random)).sum()
+    }
+
+    /// Lights seen along the ray.
+    fn unscattered(
+        &self,
+        ray: &Ray,
+        max_distance: f64,
+        transmittance: impl Fn(f64) -> Rgb,
+    ) -> Rgb {
+        let seen = self.scene.lights.iter().filter_map(|light| light.seen_along(ray));
+        let near = seen.filter(|(distance, _)| *distance <= max_distance);
+        near.map(|(distance, radiance)| radiance * transmittance(distance)).sum()
+    }
+
+    /// Scattering from the photon map: estimates at distances that are equally spaced in transmittance.
+    fn add_from_photons(
+        &mut self,
+        ray: &Ray,
+        span: Span,
+        random: &mut Random,
+        radiance: &mut RayRadiance,
+    ) {
+        let Self { scene, extinction, estimator, profile } = self;
+        let Some(by_transmittance) = ByTransmittance::new(profile, span) else { return };
+        let samples = scene.render.march_samples;
+        let count = samples as f64;
+        let towards_camera = -ray.direction;
+        for stratum in 0..samples {
+            let u = (stratum as f64 + uniform(random)) / count;
+            let distance = by_transmittance.sample_distance(u, uniform(random));
+            let place = ray.at(distance);
+            let sigma_t = if E::IS_UNIFORM { extinction.sigma_t(place) } else { Rgb::ONE };
+            let weight = by_transmittance.scattering_weight(distance, sigma_t, count);
+            let scattered = estimator.in_scattered(place, towards_camera, uniform(random));
+            let weight = weight * scene.medium.albedo;
+            radiance.single_scatter += weight * scattered.single;
+            radiance.multiple_scatter += weight * scattered.multiple;
+            radiance.query_count += 1;
+            radiance.photon_count += scattered.photon_count;
+            radiance.radius_sum += scattered.radius;
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Figures of a render.
+
+use crate::trace::PowerBalance;
+
+/// Figures of a render, summed over its passes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RenderReport {
+    /// Photons emitted.
+    pub emitted_count: u64,
+    /// Photons stored.
+    pub stored_count: u64,
+    /// Bytes a photon of the map takes.
+    pub bytes_per_photon: usize,
+    /// Where the power went: the mean over passes \[W\].
+    pub power: PowerBalance,
+    /// Time of each stage \[s\].
+    pub seconds: StageSeconds,
+    /// Passes completed.
+    pub passes_done: u32,
+}
+
+/// Time of each stage \[s\].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StageSeconds {
+    /// Emitting and tracing photons.
+    pub trace: f64,
+    /// Building the photon map.
+    pub build: f64,
+    /// Reading it along the camera's rays.
+    pub gather: f64,
+}

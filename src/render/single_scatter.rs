@@ -1,0 +1,148 @@
+//! Single scattering: light that scattered once on its way to the camera, computed without photons.
+//!
+//! Along a ray, L = integral of T(t) sigma_s(t) p(cos) E(t) T_light(t) dt per light, with E the light's irradiance. Distances come
+//! from the ray's transmittance and, for lights at a position, half of them from equi-angular sampling, combined
+//! by the balance heuristic (Veach and Guibas 1995): the inverse-square peak is sampled away, and optically thick
+//! media are not left to it.
+
+use crate::light::{Environment, Light};
+use crate::math::{DVec2, DVec3, Random, Ray, Rgb, Span, exp, uniform};
+use crate::medium::{Extinction, Medium, RayProfile};
+use crate::render::distances::{ByTransmittance, EquiAngular};
+use crate::render::shadow::transmittance_to;
+
+/// One ray of which the single scattering is asked.
+pub struct ScatteringRay<'a, E> {
+    /// The medium.
+    pub medium: &'a Medium,
+    /// Its extinction.
+    pub extinction: &'a E,
+    /// The ray.
+    pub ray: &'a Ray,
+    /// Its part inside the medium.
+    pub span: Span,
+    /// Its optical depth.
+    pub profile: &'a RayProfile,
+}
+
+impl<E: Extinction> ScatteringRay<'_, E> {
+    /// Radiance of one light, scattered once, from `samples` distances.
+    pub fn single_scatter(&self, light: &Light, samples: usize, random: &mut Random) -> Rgb {
+        let Some(by_transmittance) = ByTransmittance::new(self.profile, self.span) else {
+            return Rgb::ZERO;
+        };
+        match (light, light.position()) {
+            (_, Some(position)) => {
+                self.from_position(light, position, &by_transmittance, samples, random)
+            }
+            (Light::Environment(environment), _) => {
+                self.strata(&by_transmittance, samples, random, |place, random| {
+                    self.environment_light(environment, place, random)
+                })
+            }
+            _ => self.strata(&by_transmittance, samples, random, |place, random| {
+                self.light_towards_camera(light, place, random)
+            }),
+        }
+    }
+
+    /// Distances by transmittance alone, one a stratum.
+    fn strata(
+        &self,
+        by_transmittance: &ByTransmittance,
+        samples: usize,
+        random: &mut Random,
+        mut scattered: impl FnMut(DVec3, &mut Random) -> Rgb,
+    ) -> Rgb {
+        let count = samples as f64;
+        let mut sum = Rgb::ZERO;
+        for stratum in 0..samples {
+            let u = (stratum as f64 + uniform(random)) / count;
+            let distance = by_transmittance.sample_distance(u, uniform(random));
+            let place = self.ray.at(distance);
+            let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
+            let weight = by_transmittance.scattering_weight(distance, sigma_t, count);
+            sum += weight * scattered(place, random);
+        }
+        sum * self.medium.albedo
+    }
+
+    /// Distances by both densities.
+    fn from_position(
+        &self,
+        light: &Light,
+        position: DVec3,
+        by_transmittance: &ByTransmittance,
+        samples: usize,
+        random: &mut Random,
+    ) -> Rgb {
+        let equi_angular = EquiAngular::new(self.ray, self.span, position);
+        let near_light = samples.div_ceil(2);
+        let far = samples - near_light;
+        let mut sum = Rgb::ZERO;
+        for sample in 0..samples {
+            let distance = if sample < near_light {
+                let u = (sample as f64 + uniform(random)) / near_light as f64;
+                equi_angular.sample_distance(u)
+            } else {
+                let u = ((sample - near_light) as f64 + uniform(random)) / far as f64;
+                by_transmittance.sample_distance(u, uniform(random))
+            };
+            let place = self.ray.at(distance);
+            let sigma_t = self.extinction.sigma_t(place);
+            let transmittance = exp(-self.profile.optical_depth(distance));
+            let density = near_light as f64 * equi_angular.pdf_distance(distance)
+                + far as f64 * by_transmittance.pdf_distance(transmittance, sigma_t);
+            if density > 0.0 && sigma_t != Rgb::ZERO {
+                let light = self.light_towards_camera(light, place, random);
+                sum += transmittance * sigma_t * light / density;
+            }
+        }
+        sum * self.medium.albedo
+    }
+
+    /// Phase-weighted light from one sampled direction of a light, attenuated on its way.
+    fn light_towards_camera(&self, light: &Light, place: DVec3, random: &mut Random) -> Rgb {
+        let u = match light {
+            Light::Quad(_) | Light::Sphere(_) => DVec2::new(uniform(random), uniform(random)),
+            _ => DVec2::ZERO,
+        };
+        let Some(sample) = light.sample_illumination(place, u) else { return Rgb::ZERO };
+        // Travel: from the light (-direction) to the camera (-ray.direction).
+        let phase = self.medium.phase.density(sample.direction.dot(self.ray.direction));
+        let arriving = transmittance_to(
+            self.medium,
+            self.extinction,
+            place,
+            sample.direction,
+            sample.distance,
+        );
+        sample.irradiance * arriving * phase
+    }
+
+    /// The same of an environment: a constant one by the phase function, an image by the phase function or its
+    /// radiance in turn, combined by the balance heuristic.
+    fn environment_light(
+        &self,
+        environment: &Environment,
+        place: DVec3,
+        random: &mut Random,
+    ) -> Rgb {
+        let phase = self.medium.phase;
+        let by_image = matches!(environment, Environment::Image(_)) && uniform(random) < 0.5;
+        let towards = if by_image {
+            environment.sample_direction(DVec2::new(uniform(random), uniform(random))).direction
+        } else {
+            // The path is reversible: scatter the camera's ray to find where light comes from.
+            phase.sample_direction(self.ray.direction, random)
+        };
+        let density = phase.density(towards.dot(self.ray.direction));
+        let pdf = match environment {
+            Environment::Constant(_) => density,
+            Environment::Image(_) => 0.5 * (density + environment.pdf_direction(towards)),
+        };
+        let arriving =
+            transmittance_to(self.medium, self.extinction, place, towards, f64::INFINITY);
+        environment.radiance(towards) * arriving * (density / pdf)
+    }
+}

@@ -1,0 +1,105 @@
+//! Density volumes of scenes, on the smoke plume of `media/` and on files made here.
+
+use std::path::{Path, PathBuf};
+
+use photonvdb::medium::{Bounds, MediumExtinction, Parallelepiped};
+use photonvdb::scene::{MediumKind, Plan, Scene, SceneError};
+
+fn media(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name)
+}
+
+/// Loads a scene beside a file `volume.vdb`, with these lines in its medium.
+fn load(volume: &Path, medium: &str) -> Result<Scene, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(volume, folder.path().join("volume.vdb")).unwrap();
+    let scene = format!(
+        "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\n\
+         [medium]\nkind = \"vdb\"\nfile = \"volume.vdb\"\nalbedo = 0.5\n{medium}\n\
+         [[light]]\nkind = \"environment\"\nradiance = 1\n"
+    );
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene).unwrap();
+    Scene::load(&path)
+}
+
+/// The error, without the folder it happened in.
+fn refusal(volume: &Path, medium: &str) -> String {
+    let message = load(volume, medium).unwrap_err().to_string();
+    let words = message.split(' ').map(|word| match word.rfind("/volume.vdb") {
+        Some(at) => &word[at + 1..],
+        None => word,
+    });
+    let message = words.collect::<Vec<_>>().join(" ");
+    message.rsplit_once("scene.toml").unwrap().1.to_owned()
+}
+
+fn shape(scene: &Scene) -> Parallelepiped {
+    match scene.medium.bounds {
+        Bounds::Parallelepiped(shape) => shape,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_volume_is_found_beside_the_scene() {
+    let scene = load(&media("smoke_plume.vdb"), "density_scale = 35").unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    let MediumExtinction::Grid(grid) = &scene.medium.extinction else {
+        panic!("{:?}", scene.medium.bounds)
+    };
+    assert_eq!(grid.density_scale(), 35.0);
+    assert_eq!(grid.grid().statistics().active_voxel_count, 119_778);
+    let plan = Plan::of(&scene);
+    assert_eq!((plan.medium, plan.majorants), (MediumKind::Grid, true));
+    assert!(plan.expected_stored > 100_000, "{plan}");
+}
+
+#[test]
+fn the_scene_moves_the_volume_after_the_file() {
+    let still = shape(&load(&media("smoke_plume.vdb"), "").unwrap());
+    let moved = "transform = { translate = [10, 20, 30], rotate = [0, 90, 0], scale = [1, 2, 1] }";
+    let moved = shape(&load(&media("smoke_plume.vdb"), moved).unwrap());
+    // About y by 90 degrees, x goes to -z and z to x.
+    let turn = |v: glam::DVec3| glam::DVec3::new(v.z, 2.0 * v.y, -v.x);
+    let expected = turn(still.corner) + glam::DVec3::new(10.0, 20.0, 30.0);
+    assert!(moved.corner.abs_diff_eq(expected, 1e-12), "{moved:?}");
+    for (moved, still) in moved.edges.iter().zip(still.edges) {
+        assert!(moved.abs_diff_eq(turn(still), 1e-12), "{moved:?}");
+    }
+    let matrix = "transform = { matrix = [0,0,1,10, 0,2,0,20, -1,0,0,30, 0,0,0,1] }";
+    let by_matrix = shape(&load(&media("smoke_plume.vdb"), matrix).unwrap());
+    assert!(by_matrix.corner.abs_diff_eq(moved.corner, 1e-12), "{by_matrix:?}");
+}
+
+#[test]
+fn a_scale_of_zero_is_transparent() {
+    let scene = load(&media("smoke_plume.vdb"), "density_scale = 0").unwrap();
+    let MediumExtinction::Uniform(uniform) = scene.medium.extinction else { panic!() };
+    assert_eq!(uniform.sigma_t, 0.0);
+    assert_eq!(Plan::of(&scene).expected_stored, 0);
+}
+
+#[test]
+fn the_content_of_a_volume_matters() {
+    let hash = |name, medium| load(&media(name), medium).unwrap().hash;
+    let smoke = hash("smoke_plume.vdb", "");
+    assert_eq!(hash("smoke_plume.vdb", "density_scale = 1.0"), smoke);
+    assert_ne!(hash("cloud.vdb", ""), smoke);
+    assert_ne!(hash("smoke_plume.vdb", "density_scale = 2"), smoke);
+    assert_ne!(hash("smoke_plume.vdb", "transform = { scale = 2 }"), smoke);
+    assert_ne!(hash("smoke_plume.vdb", "density = \"temperature\""), smoke);
+}
+
+#[test]
+fn what_a_file_lacks_is_named() {
+    assert_eq!(
+        refusal(&media("smoke_plume.vdb"), "density = \"dens\""),
+        ":8: medium.density: volume.vdb has no grid \"dens\"; \
+         name one it holds: \"density\" (float), \"temperature\" (float)"
+    );
+    assert_eq!(
+        refusal(&Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"), ""),
+        ":6: medium.file: volume.vdb is not an OpenVDB file; give a file saved as .vdb"
+    );
+}
