@@ -175,7 +175,8 @@ const SPOILT: &[(&str, &str, &str)] = &[
     ("intensity = 1.0", "radiance = 1.0", "s.toml:18: light[0].radiance: belongs to kind \"environment\", but this kind is \"point\""),
     ("intensity = [1, 2, 3]\n", "", "s.toml:20: light[1].intensity: missing key; expected a number or a list of 3 numbers"),
     ("look_at = [0, 0, 0]\nintensity", "look_at = [0, 3, 0]\nintensity", "s.toml:23: light[1].look_at: must not be the light's position, found [0, 3, 0]"),
-    ("cone_angle = 20", "cone_angle = 180", "s.toml:25: light[1].cone_angle: must lie in (0, 180) degrees, found 180"),
+    ("cone_angle = 20", "cone_angle = 180", "s.toml:25: light[1].cone_angle: must lie in [0.001, 180) degrees, found 180"),
+    ("cone_angle = 20", "cone_angle = 0", "s.toml:25: light[1].cone_angle: must lie in [0.001, 180) degrees, found 0"),
     ("falloff_angle = 10", "falloff_angle = 21", "s.toml:26: light[1].falloff_angle: must lie between 0 and cone_angle = 20, found 21"),
     ("falloff_angle = 10", "falloff_angle = -1", "s.toml:26: light[1].falloff_angle: must lie between 0 and cone_angle = 20, found -1"),
     ("direction = [0, -1, 0]", "direction = [0, 0, 0]", "s.toml:30: light[2].direction: must have a length, found [0, 0, 0]"),
@@ -334,7 +335,13 @@ fn overrides_meet_the_limits_of_the_file() {
          accepted: \"random\", \"stratified\", \"sobol\""
     );
     assert_eq!(
-        refused(Overrides { resolution: Some([0, 9]), ..none }),
+        refused(Overrides { resolution: Some([0, 9]), ..none.clone() }),
         "s.toml: camera.resolution (overridden): each side must lie in 1 to 16384 pixels, found [0, 9]"
+    );
+    let sections = "[medium]\nkind = \"vdb\"\n";
+    let overrides = Overrides { resolution: Some([9, 9]), ..none };
+    assert_eq!(
+        refusal_of("s.toml", sections, &overrides),
+        "s.toml:1: camera.position: missing key; expected a list of 3 numbers"
     );
 }

@@ -69,7 +69,7 @@ fn every_value_matters() {
         ("intensity = 1.0", "intensity = 2.0"),
         ("count = 1000", "count = 1001"),
         ("count = 1000", "count = 1000\nemission = \"random\""),
-        ("count = 1000", "count = 1000\nseed = 1"),
+        ("count = 1000", "count = 1000\nseed = 18446744073709551615"),
         ("count = 1000", "count = 1000\nmax_order = 1"),
         ("[photons]", "[estimate]\nk = 99\n[photons]"),
         ("[photons]", "[estimate]\ndivisor = \"k\"\n[photons]"),

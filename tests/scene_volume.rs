@@ -1,4 +1,4 @@
-//! Density volumes of scenes, on the smoke plume of `media/` and on files made here.
+//! Density volumes of scenes, on the smoke plume of `media/` and on the small files of `scene_volumes/`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,10 @@ use photonvdb::scene::{MediumKind, Plan, Scene, SceneError};
 
 fn media(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name)
+}
+
+fn small(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene_volumes").join(name)
 }
 
 /// Loads a scene beside a file `volume.vdb`, with these lines in its medium.
@@ -62,14 +66,14 @@ fn the_scene_moves_the_volume_after_the_file() {
     let moved = shape(&load(&media("smoke_plume.vdb"), moved).unwrap());
     // About y by 90 degrees, x goes to -z and z to x.
     let turn = |v: glam::DVec3| glam::DVec3::new(v.z, 2.0 * v.y, -v.x);
-    let expected = turn(still.corner) + glam::DVec3::new(10.0, 20.0, 30.0);
-    assert!(moved.corner.abs_diff_eq(expected, 1e-12), "{moved:?}");
-    for (moved, still) in moved.edges.iter().zip(still.edges) {
+    let expected = turn(still.corner()) + glam::DVec3::new(10.0, 20.0, 30.0);
+    assert!(moved.corner().abs_diff_eq(expected, 1e-12), "{moved:?}");
+    for (moved, still) in moved.edges().iter().zip(still.edges()) {
         assert!(moved.abs_diff_eq(turn(still), 1e-12), "{moved:?}");
     }
     let matrix = "transform = { matrix = [0,0,1,10, 0,2,0,20, -1,0,0,30, 0,0,0,1] }";
     let by_matrix = shape(&load(&media("smoke_plume.vdb"), matrix).unwrap());
-    assert!(by_matrix.corner.abs_diff_eq(moved.corner, 1e-12), "{by_matrix:?}");
+    assert!(by_matrix.corner().abs_diff_eq(moved.corner(), 1e-12), "{by_matrix:?}");
 }
 
 #[test]
@@ -102,4 +106,21 @@ fn what_a_file_lacks_is_named() {
         refusal(&Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"), ""),
         ":6: medium.file: volume.vdb is not an OpenVDB file; give a file saved as .vdb"
     );
+    assert_eq!(
+        refusal(&small("empty.vdb"), ""),
+        ":4: medium.density: grid \"density\" of volume.vdb is empty: no density is above 0"
+    );
+    assert_eq!(
+        refusal(&small("no_grids.vdb"), ""),
+        ":4: medium.density: volume.vdb has no grid \"density\"; it holds no grids at all"
+    );
+}
+
+#[test]
+fn what_is_no_density_counts_as_zero_and_is_told() {
+    let scene = load(&small("nan_inf_neg.vdb"), "").unwrap();
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    let expected =
+        "volume.vdb: 5 values are no densities and count as 0 (1 NaN, 2 infinite, 2 negative)";
+    assert!(warning.ends_with(expected), "{warning}");
 }

@@ -112,7 +112,12 @@ impl Parallelepiped {
         Self { corner, edges, inverse }
     }
 
-    /// The three edges that leave one corner \[m\].
+    /// One corner \[m\].
+    pub fn corner(&self) -> DVec3 {
+        self.corner
+    }
+
+    /// The three edges that leave that corner \[m\].
     pub fn edges(&self) -> [DVec3; 3] {
         self.edges
     }

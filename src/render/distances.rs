@@ -36,7 +36,11 @@ impl<'a> ByTransmittance<'a> {
     /// Density of [`Self::sample_distance`] \[1/m\], where transmittance and sigma_t are as given.
     pub fn pdf_distance(&self, transmittance: Rgb, sigma_t: Rgb) -> f64 {
         let channel = |c: usize| {
-            if self.opacity[c] > 0.0 { transmittance[c] * sigma_t[c] / self.opacity[c] } else { 0.0 }
+            if self.opacity[c] > 0.0 {
+                transmittance[c] * sigma_t[c] / self.opacity[c]
+            } else {
+                0.0
+            }
         };
         match self.channels {
             1 => channel(0),
@@ -103,8 +107,8 @@ impl EquiAngular {
     pub fn sample_distance(&self, u: f64) -> f64 {
         // tan(first + x) by the addition theorem: exact also where the angle is a rounding of `first`.
         let (tan_first, tan_step) = (self.first.tan(), (u * self.angle).tan());
-        let step = self.offset * (tan_step * (1.0 + tan_first * tan_first))
-            / (1.0 - tan_first * tan_step);
+        let step =
+            self.offset * (tan_step * (1.0 + tan_first * tan_first)) / (1.0 - tan_first * tan_step);
         let from_start = self.span.start + step;
         let distance = if from_start.is_finite() && self.first.abs() < 1.5 {
             from_start
@@ -143,7 +147,8 @@ mod tests {
             for step in 1..50 {
                 let u = f64::from(step) / 50.0;
                 let h = 1e-5;
-                let (low, high) = (sampling.sample_distance(u - h), sampling.sample_distance(u + h));
+                let (low, high) =
+                    (sampling.sample_distance(u - h), sampling.sample_distance(u + h));
                 let density = 2.0 * h / (high - low);
                 let middle = sampling.sample_distance(u);
                 let ratio = density / sampling.pdf_distance(middle);

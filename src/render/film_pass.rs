@@ -32,7 +32,8 @@ pub fn add_pass<E: Extinction>(
         .into_par_iter()
         .map(|tile| {
             let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-            let mut pass = PixelPass { scene, strata: &strata, peaks: &peaks, reader: lit.reader() };
+            let mut pass =
+                PixelPass { scene, strata: &strata, peaks: &peaks, reader: lit.reader() };
             let rows = top..(top + TILE).min(height);
             let pixels: Vec<(usize, Pixel)> = rows
                 .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
@@ -74,8 +75,9 @@ struct PixelPass<'a, E> {
 impl<E: Extinction> PixelPass<'_, E> {
     fn pixel(&mut self, x: usize, y: usize, random: &mut Random) -> Pixel {
         let corner = DVec2::new(x as f64, y as f64);
-        let within = |place: DVec2| (place - corner).cmpge(DVec2::ZERO).all()
-            && (place - corner).cmplt(DVec2::ONE).all();
+        let within = |place: DVec2| {
+            (place - corner).cmpge(DVec2::ZERO).all() && (place - corner).cmplt(DVec2::ONE).all()
+        };
         let peaks: Vec<(usize, DVec2)> =
             self.peaks.iter().copied().filter(|(_, place)| within(*place)).collect();
         let skipped: Vec<usize> = peaks.iter().map(|(light, _)| *light).collect();

@@ -110,12 +110,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
     }
 
     /// Lights seen along the ray.
-    fn unscattered(
-        &self,
-        ray: &Ray,
-        max_distance: f64,
-        transmittance: impl Fn(f64) -> Rgb,
-    ) -> Rgb {
+    fn unscattered(&self, ray: &Ray, max_distance: f64, transmittance: impl Fn(f64) -> Rgb) -> Rgb {
         let seen = self.scene.lights.iter().filter_map(|light| light.seen_along(ray));
         let near = seen.filter(|(distance, _)| *distance <= max_distance);
         near.map(|(distance, radiance)| radiance * transmittance(distance)).sum()

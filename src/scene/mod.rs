@@ -9,8 +9,10 @@
 mod build;
 mod environment;
 mod error;
+mod expected_collisions;
 mod file;
 mod hash;
+mod light_counts;
 mod overrides;
 mod plan;
 mod tree;
@@ -21,8 +23,9 @@ pub use file::{
     BoundsSection, CameraSection, EstimateSettings, LightSection, MediumSection, PhaseSection,
     PhotonSettings, RenderSettings, SceneFile, TransformSection,
 };
+pub use light_counts::LightCounts;
 pub use overrides::Overrides;
-pub use plan::{LightCounts, MediumKind, Plan};
+pub use plan::{MediumKind, Plan};
 pub use tree::Origin;
 
 use std::path::Path;

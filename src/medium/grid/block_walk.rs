@@ -188,3 +188,79 @@ pub(super) fn first_crossing(crossings: [f64; 3]) -> (usize, f64) {
         (2, z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::{
+        math::{Stream, uniform},
+        medium::grid::test_grids::clumps,
+    };
+
+    /// Directions with every pattern of 0, -0, tiny and equal components.
+    fn directions() -> Vec<[f64; 3]> {
+        let parts = [0.0, -0.0, 1.0, -1.0, 1e-9, -1e-17, 1e-310, 0.3, -0.7];
+        let mut directions = vec![];
+        for x in parts {
+            for y in parts {
+                for z in parts {
+                    if x * x + y * y + z * z > 1e-4 {
+                        directions.push([x, y, z]);
+                    }
+                }
+            }
+        }
+        directions
+    }
+
+    #[test]
+    fn pieces_join_to_the_span_and_bound_what_they_cross() {
+        let grid = clumps();
+        let mut random = Stream::Experiment.random(5, 0);
+        let center = -grid.local_origin();
+        for direction in directions() {
+            for snap in [1.0, 4.0, 1024.0] {
+                // On corners and edges of bricks and cells, and between.
+                let origin = std::array::from_fn(|axis| {
+                    let offset = 60.0 * uniform(&mut random) - 30.0;
+                    center[axis] + (offset * snap / 8.0).round() * 8.0 / snap
+                });
+                let ray = LocalRay::new(origin, direction);
+                let span = Span::new(-70.0, 70.0);
+                let (mut end, mut sum, mut piece_count) = (span.start, 0.0, 0);
+                for piece in BlockWalk::new(&grid, &ray, span) {
+                    assert_eq!(piece.span.start, end, "{origin:?} {direction:?}");
+                    assert!(piece.span.end >= end);
+                    end = piece.span.end;
+                    sum += piece.span.length();
+                    piece_count += 1;
+                    let inner = piece.span.start + uniform(&mut random) * piece.span.length();
+                    let density = grid.local_density(ray.at(inner));
+                    assert!(density <= grid.majorant(&piece.content) + 1e-9);
+                }
+                assert_eq!(end, span.end);
+                assert!((sum - span.length()).abs() < 1e-12 * span.length());
+                assert!(piece_count <= 100, "{piece_count} {origin:?} {direction:?}");
+
+                let (mut end, mut sum, mut cell_count) = (span.start, 0.0, 0);
+                grid.for_each_cell(&ray, span, |piece| {
+                    assert_eq!(piece.span.start, end);
+                    end = piece.span.end;
+                    sum += piece.span.length();
+                    cell_count += 1;
+                    for (u, value) in [0.0, 0.5, 1.0].into_iter().zip(piece.density.values) {
+                        let at = ray.at(piece.span.start + u * piece.span.length());
+                        let density = grid.local_density(at);
+                        assert!((density - value).abs() < 1e-9, "{origin:?} {direction:?} {u}");
+                    }
+                    ControlFlow::Continue(())
+                });
+                assert_eq!(end, span.end);
+                assert!((sum - span.length()).abs() < 1e-12 * span.length());
+                assert!(cell_count <= 250, "{cell_count} {origin:?} {direction:?}");
+            }
+        }
+    }
+}

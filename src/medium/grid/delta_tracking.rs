@@ -35,7 +35,7 @@ impl DensityGrid {
 
     /// An upper bound of the density in a block.
     #[inline]
-    fn majorant(&self, content: &Content) -> f64 {
+    pub(super) fn majorant(&self, content: &Content) -> f64 {
         match content {
             Content::Uniform(density) => *density,
             Content::Corners(corners) => {
@@ -103,5 +103,59 @@ impl DeltaFlight<'_> {
         let collision = self.grid.distance_at_depth(self.ray, rest, self.draw_budget(random));
         self.budget = self.draw_budget(random);
         collision
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{math::Stream, medium::grid::test_grids::of_field};
+
+    /// Uniform numbers drawn between two states of a generator.
+    fn draws(mut before: Random, after: &Random) -> u32 {
+        (0..1000)
+            .find(|_| {
+                let is_same = before == *after;
+                uniform(&mut before);
+                is_same
+            })
+            .expect("the generator went further than this")
+    }
+
+    #[test]
+    fn tentative_collisions_come_at_the_rate_of_the_majorant() {
+        // sigma_t = 0.02 x on bricks of 8: majorants 0.16 and 0.32; the ray ends at 16.
+        let grid = of_field([0; 3], [2, 0, 0], |[x, ..]| x as f32);
+        let scale = 0.02;
+        let origin = [0.0, 3.0, 4.0];
+        let local = grid.local_origin().to_array();
+        let ray = LocalRay::new(std::array::from_fn(|a| origin[a] - local[a]), [1.0, 0.0, 0.0]);
+        let span = Span::new(0.0, 16.0);
+
+        // Expected lookups: the majorant's integral, weighted by the chance of getting there.
+        let step = 1e-3;
+        let truth: f64 = (0..16_000)
+            .map(|n| (f64::from(n) + 0.5) * step)
+            .map(|x| if x < 8.0 { 0.16 } else { 0.32 } * (-0.01 * x * x).exp() * step)
+            .sum();
+
+        let means: Vec<f64> = (0..64)
+            .map(|batch| {
+                let mut random = Stream::Experiment.random(batch, 3);
+                let lookups: u32 = (0..2000)
+                    .map(|_| {
+                        let before = random.clone();
+                        let hit = grid.sample_collision(&ray, span, scale, &mut random);
+                        // One draw before all, two a lookup, but one at a collision.
+                        (draws(before, &random) - 1 + u32::from(hit.is_some())) / 2
+                    })
+                    .sum();
+                f64::from(lookups) / 2000.0
+            })
+            .collect();
+        let mean = means.iter().sum::<f64>() / 64.0;
+        let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 63.0;
+        let z = (mean - truth) / (variance / 64.0).sqrt();
+        assert!(z.abs() < 4.5, "{mean} lookups for {truth}, z = {z}");
     }
 }

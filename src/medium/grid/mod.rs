@@ -16,6 +16,8 @@ mod density_grid;
 mod extinction;
 mod index_builder;
 mod slot;
+#[cfg(test)]
+mod test_grids;
 mod trilinear;
 mod voxel_source;
 

@@ -11,7 +11,8 @@ pub struct SparseGrid<T> {
     pub index_to_world: DAffine3,
     /// Origins of the 8^3 leaves, multiples of 8.
     pub leaves: Vec<[i32; 3]>,
-    /// Active voxels of each leaf; voxel offset (x << 6) | (y << 3) | z is bit `offset & 63` of word `offset >> 6`.
+    /// Active voxels of each leaf; voxel offset (x << 6) | (y << 3) | z is bit `offset & 63` of
+    /// word `offset >> 6`.
     pub masks: Vec<[u64; 8]>,
     /// All 512 values of each leaf, inactive ones included, in voxel-offset order.
     pub values: Vec<T>,

@@ -27,7 +27,7 @@ pub enum LightSection {
     /// | `position` | 3 numbers | m | required | | |
     /// | `look_at` | 3 numbers | m | required | not `position` | a point on the axis |
     /// | `intensity` | number or RGB | W/sr | required | at least 0 | on the axis |
-    /// | `cone_angle` | number | degrees | required | (0, 180) | half-angle; dark outside |
+    /// | `cone_angle` | number | degrees | required | 0.001 to below 180 | half-angle; dark outside |
     /// | `falloff_angle` | number | degrees | `cone_angle` | 0 to `cone_angle` | half-angle of full intensity, from where it falls linearly in the angle |
     Spot { position: DVec3, look_at: DVec3, intensity: Rgb, cone_angle: f64, falloff_angle: f64 },
     /// `kind = "directional"`: parallel light from infinitely far.
@@ -80,6 +80,9 @@ const KINDS: [(&str, &[&str]); 6] = [
     ("sphere", &["kind", "center", "radius", "radiance"]),
 ];
 
+/// Narrowest cone whose solid angle does not vanish by rounding \[degrees\].
+const MIN_CONE_ANGLE: f64 = 0.001;
+
 /// Sine of the angle below which the edges of a quad count as parallel.
 const PARALLEL: f64 = 1e-9;
 
@@ -106,8 +109,8 @@ impl LightSection {
         let has_axis = (look_at - position).try_normalize().is_some();
         table.ensure("look_at", has_axis, "must not be the light's position")?;
         let cone_angle: f64 = table.require("cone_angle")?;
-        let is_cone = cone_angle > 0.0 && cone_angle < 180.0;
-        table.ensure("cone_angle", is_cone, "must lie in (0, 180) degrees")?;
+        let is_cone = (MIN_CONE_ANGLE..180.0).contains(&cone_angle);
+        table.ensure("cone_angle", is_cone, "must lie in [0.001, 180) degrees")?;
         let falloff_angle: f64 = table.get_or("falloff_angle", cone_angle)?;
         let rule = format!("must lie between 0 and cone_angle = {cone_angle}");
         table.ensure("falloff_angle", (0.0..=cone_angle).contains(&falloff_angle), &rule)?;

@@ -12,7 +12,7 @@ use crate::scene::error::Problem;
 /// |---|---|---|---|---|---|
 /// | `count` | integer | | 1 000 000 | 1 to 10^12 | photons emitted per pass |
 /// | `emission` | `"random"`, `"stratified"`, `"sobol"` | | `"stratified"` | | how they are sampled |
-/// | `seed` | integer | | 0 | 0 to 2^64 - 1 (2^63 - 1 in TOML) | seed of every random number |
+/// | `seed` | integer | | 0 | 0 to 2^64 - 1 | seed of every random number |
 /// | `max_order` | integer | | 1000 | 1 to 2^32 - 1 | scatterings a photon is followed through; what is cut is counted |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PhotonSettings {

@@ -116,9 +116,10 @@ impl Node {
     }
 
     fn entry(&mut self, key: &str, default: impl FnOnce() -> Value) -> Option<&mut Node> {
+        let origin = self.origin;
         let Value::Table(entries) = &mut self.value else { return None };
         let index = entries.iter().position(|(name, _)| name == key).unwrap_or_else(|| {
-            entries.push((key.into(), Node { origin: Origin::Override, value: default() }));
+            entries.push((key.into(), Node { origin, value: default() }));
             entries.len() - 1
         });
         entries.get_mut(index).map(|(_, node)| node)

@@ -1,0 +1,57 @@
+//! The named values written before a file's grids and before each grid's transform.
+//!
+//! Each is a name, a type, a length and as many bytes; what is not needed here is passed over by
+//! its length.
+
+use super::cursor::Cursor;
+use super::fault::Fault;
+use super::summary::IndexBox;
+
+/// What a grid's metadata says that is of use.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Metadata {
+    /// "fog volume", "level set", "staggered".
+    pub class: Option<String>,
+    /// Statistics the writer left: bounds of the active voxels and their number.
+    pub bbox_min: Option<[i32; 3]>,
+    pub bbox_max: Option<[i32; 3]>,
+    pub voxel_count: Option<u64>,
+}
+
+impl Metadata {
+    /// Reads all of it.
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Fault> {
+        let mut metadata = Self::default();
+        for _ in 0..cursor.u32("the metadata")? {
+            let name = cursor.string("the name of a metadata value")?;
+            let kind = cursor.string("the type of a metadata value")?;
+            let len = cursor.u32("a metadata value")? as usize;
+            let value = cursor.take(len, "a metadata value")?;
+            metadata.note(&name, &kind, value);
+        }
+        Ok(metadata)
+    }
+
+    fn note(&mut self, name: &str, kind: &str, value: &[u8]) {
+        match (name, kind) {
+            ("class", "string") => self.class = Some(String::from_utf8_lossy(value).into_owned()),
+            ("file_bbox_min", "vec3i") => self.bbox_min = coordinates(value),
+            ("file_bbox_max", "vec3i") => self.bbox_max = coordinates(value),
+            ("file_voxel_count", "int64") => {
+                self.voxel_count = value.try_into().ok().map(u64::from_le_bytes);
+            }
+            _ => {}
+        }
+    }
+
+    /// Bounds of the active voxels as the writer noted them; none when there are no active voxels.
+    pub(super) fn bbox(&self) -> Option<IndexBox> {
+        let bbox = IndexBox { min: self.bbox_min?, max: self.bbox_max? };
+        (0..3).all(|axis| bbox.min[axis] <= bbox.max[axis]).then_some(bbox)
+    }
+}
+
+fn coordinates(value: &[u8]) -> Option<[i32; 3]> {
+    let mut cursor = Cursor::new(value, 0);
+    cursor.coordinates("a metadata value").ok()
+}
