@@ -28,7 +28,7 @@ pub struct ExrPart {
     pub compression: String,
     /// Name and sample type (`half`, `float` or `uint`) of each channel, in alphabetical order.
     pub channels: Vec<(String, &'static str)>,
-    /// Name and value of each attribute that is text or a number, in alphabetical order.
+    /// Name and value of each descriptive attribute that is text or a number, in alphabetical order.
     pub attributes: Vec<(String, String)>,
 }
 
@@ -59,6 +59,10 @@ pub fn describe_exr(path: &Path) -> Result<ExrDescription, FilmError> {
     })
 }
 
+/// Attributes that other fields say already, or that only a decoder needs.
+const STRUCTURAL: [&[u8]; 5] =
+    [b"name", b"chunkCount", b"pixelAspectRatio", b"screenWindowWidth", b"type"];
+
 fn describe_part(header: &Header) -> ExrPart {
     let channels = header.channels.list.iter().map(|channel| {
         let sample_type = match channel.sample_type {
@@ -70,6 +74,7 @@ fn describe_part(header: &Header) -> ExrPart {
     });
     let mut attributes: Vec<(String, String)> = header
         .all_named_attributes()
+        .filter(|(name, _)| !STRUCTURAL.contains(name))
         .filter_map(|(name, value)| {
             Some((String::from_utf8_lossy(name).into_owned(), readable(&value)?))
         })

@@ -15,13 +15,10 @@ use exr::block::reader::{ChunksReader, Reader};
 use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::Header;
-use exr::meta::{BlockDescription, compute_chunk_count};
 use half::f16;
 
+use super::exr_limits::{check_chunk, check_header, check_pixel_count};
 use super::{FilmError, RgbImage};
-
-/// Largest number of pixels that is read: 16384 x 8192.
-pub const MAX_PIXEL_COUNT: usize = 1 << 27;
 
 /// Reads the channels R, G and B of the first part of an EXR that has them. The image is the file's
 /// display window; what its pixels do not cover is black.
@@ -37,22 +34,31 @@ pub fn read_rgb(path: &Path) -> Result<RgbImage, FilmError> {
         check_pixel_count(path, display)?;
         let pixels = vec![[0.0; 3]; display.area()];
         let mut image = RgbImage { width: display.width(), height: display.height(), pixels };
-        reader
-            .filter_chunks(false, |_, tile, block| {
-                block.layer == part && tile.is_largest_resolution_level()
-            })
-            .and_then(|chunks| {
-                chunks.decompress_sequential(false, |_, block| {
-                    if block.index.layer == part {
-                        canvas.insert(&block, &mut image)
-                    } else {
-                        Ok(())
-                    }
-                })
-            })
-            .map_err(|error| exr_error(path, error))?;
+        decode(reader, part, &canvas, &mut image).map_err(|error| exr_error(path, error))?;
         Ok(image)
     })
+}
+
+/// Decodes the chunks of one part into the image.
+fn decode(
+    reader: Reader<BufReader<File>>,
+    part: usize,
+    canvas: &Canvas,
+    image: &mut RgbImage,
+) -> exr::error::UnitResult {
+    let chunks = reader.filter_chunks(false, |_, tile, block| {
+        block.layer == part && tile.is_largest_resolution_level()
+    })?;
+    let meta = chunks.meta_data().clone();
+    for chunk in chunks {
+        let chunk = chunk?;
+        // The offset table of a damaged file may lead to another part.
+        if chunk.layer_index == part {
+            check_chunk(&canvas.header, &chunk.compressed_block)?;
+            canvas.insert(&UncompressedBlock::decompress_chunk(chunk, &meta, false)?, image)?;
+        }
+    }
+    Ok(())
 }
 
 /// The headers of the file, every size in them checked against the file's length.
@@ -92,37 +98,6 @@ fn exr_error(path: &Path, error: exr::error::Error) -> FilmError {
         }
         exr::error::Error::Aborted => FilmError::Damaged { path, reason: "aborted".to_string() },
     }
-}
-
-fn check_pixel_count(path: &Path, Vec2(width, height): Vec2<usize>) -> Result<(), FilmError> {
-    match width.checked_mul(height) {
-        Some(count) if count <= MAX_PIXEL_COUNT => Ok(()),
-        _ => Err(FilmError::TooLarge {
-            path: path.to_path_buf(),
-            width,
-            height,
-            limit: MAX_PIXEL_COUNT,
-        }),
-    }
-}
-
-/// Every size the decoder will allocate for must be believable: each chunk takes 8 bytes in the offset
-/// table alone, and no block is larger than the largest image.
-fn check_header(path: &Path, header: &Header, file_length: u64) -> Result<(), FilmError> {
-    let damaged =
-        |reason: &str| FilmError::Damaged { path: path.to_path_buf(), reason: reason.to_string() };
-    check_pixel_count(path, header.layer_size)?;
-    if let BlockDescription::Tiles(tiles) = header.blocks {
-        check_pixel_count(path, tiles.tile_size)?;
-    }
-    let chunk_count = compute_chunk_count(header.compression, header.layer_size, header.blocks);
-    if chunk_count as u64 > file_length / 8 || chunk_count != header.chunk_count {
-        return Err(damaged("it is too short for the number of its blocks"));
-    }
-    if header.channels.list.is_empty() {
-        return Err(damaged("it has no channels"));
-    }
-    Ok(())
 }
 
 /// The first part with unsubsampled R, G and B.

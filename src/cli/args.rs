@@ -1,0 +1,187 @@
+//! What can be typed, and the help that teaches it.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use photonvdb::film::ExtraLayers;
+use photonvdb::scene::Overrides;
+
+use super::count::{parse_count, parse_resolution};
+
+const EXAMPLES: &str = "\
+Examples:
+  photonvdb render fog.toml -o fog.exr --preview fog.png
+      Render a scene and look at it.
+  photonvdb render cloud.toml -o cloud.exr --photons 1e7 --passes 16
+      Sixteen independent passes of ten million photons, averaged.
+  photonvdb inspect smoke.vdb
+      The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
+  photonvdb inspect fog.toml
+      What a scene needs, without rendering it.
+
+Exit codes: 0 done; 1 a check asked for did not hold; 2 bad input or usage.";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  photonvdb render fog.toml -o fog.exr --resolution 320x180 --photons 1e5
+      A quick draft.
+  photonvdb render fog.toml -o fog.exr --reference truth.exr --report fog.json
+      How long it took, how much memory, and how far it is from a reference.
+  photonvdb render fog.toml -o fog.exr --report - --quiet | jq .seconds
+      The report alone, on stdout.
+
+Ctrl-C ends the render after the pass in flight and writes what there is; a second one ends it at once.";
+
+const INSPECT_EXAMPLES: &str = "\
+Examples:
+  photonvdb inspect smoke.vdb
+  photonvdb inspect smoke.vdb --json | jq '.grids[].name'
+  photonvdb inspect fog.toml
+  photonvdb inspect fog.exr";
+
+/// Renders fog, smoke, clouds and fire, homogeneous or from OpenVDB files, by volumetric photon mapping.
+#[derive(Debug, Parser)]
+#[command(name = "photonvdb", version, after_help = EXAMPLES, max_term_width = 100)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to OpenEXR
+    Render(Box<RenderArguments>),
+    /// Show what is in a .vdb, a scene or an .exr
+    Inspect(InspectArguments),
+}
+
+/// `photonvdb render`
+#[derive(Args, Debug)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub struct RenderArguments {
+    /// Scene file, .toml or .json
+    pub scene: PathBuf,
+
+    /// Image to write: linear 32-bit OpenEXR with all layers
+    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr_name)]
+    pub output: PathBuf,
+
+    /// Photons emitted per pass [default: photons.count of the scene]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
+    pub photons: Option<u64>,
+
+    /// Independent passes; the image is their mean
+    #[arg(long, value_name = "P", default_value = "1", value_parser = parse_passes)]
+    pub passes: u32,
+
+    /// Photons of one estimate: more are smoother, fewer are sharper [default: estimate.k of the scene]
+    #[arg(long, value_name = "K", value_parser = parse_count)]
+    pub k: Option<u64>,
+
+    /// What the k nearest photons count as [default: estimate.divisor of the scene]
+    #[arg(long, value_name = "D", value_parser = PossibleValuesParser::new(["k", "k-1", "k-1/2"]))]
+    pub divisor: Option<String>,
+
+    /// How photons are sampled at the lights [default: photons.emission of the scene]
+    #[arg(long, value_name = "E", value_parser = PossibleValuesParser::new(["random", "stratified", "sobol"]))]
+    pub emission: Option<String>,
+
+    /// Seed of every random number: equal seeds give equal images [default: photons.seed of the scene]
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+
+    /// Threads to use [default: one a core]; the image does not depend on it
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+
+    /// Image size in pixels [default: camera.resolution of the scene]
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
+    pub resolution: Option<[u64; 2]>,
+
+    /// More layers to write, separated by commas
+    #[arg(long, value_name = "LAYERS", value_delimiter = ',')]
+    pub layers: Vec<ExtraLayer>,
+
+    /// Take single scattering from photons, too, instead of sampling it towards the lights
+    #[arg(long)]
+    pub photons_only: bool,
+
+    /// Image to compare with, of the same size; the figures go to stderr and to the report
+    #[arg(long, value_name = "REF.exr")]
+    pub reference: Option<PathBuf>,
+
+    /// Settings, times, photons, power and memory as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub report: Option<PathBuf>,
+
+    /// Tone-mapped picture for a quick look
+    #[arg(long, value_name = "OUT.png")]
+    pub preview: Option<PathBuf>,
+
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Layers written on request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum ExtraLayer {
+    /// Mean number of photons found a query
+    PhotonCount,
+    /// Mean kernel radius of the queries
+    KernelRadius,
+}
+
+/// `photonvdb inspect`
+#[derive(Args, Debug)]
+#[command(after_help = INSPECT_EXAMPLES)]
+pub struct InspectArguments {
+    /// A .vdb (its grids), a scene (its plan) or an .exr (its layers and metadata)
+    pub file: PathBuf,
+
+    /// Machine-readable, on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl RenderArguments {
+    /// What replaces values of the scene file.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            photons: self.photons,
+            emission: self.emission.clone(),
+            seed: self.seed,
+            k: self.k,
+            divisor: self.divisor.clone(),
+            resolution: self.resolution,
+        }
+    }
+
+    /// The layers asked for beyond the usual.
+    pub fn extra_layers(&self) -> ExtraLayers {
+        ExtraLayers {
+            photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
+            kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
+        }
+    }
+}
+
+fn parse_passes(text: &str) -> Result<u32, String> {
+    let count = parse_count(text)?;
+    u32::try_from(count).map_err(|_| format!("`{text}` passes would never end"))
+}
+
+/// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
+fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
+    match Path::new(text).extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("exr") => Err(format!(
+            "the image is written as OpenEXR, its name must end in .exr (for a .{} use --preview)",
+            extension.display()
+        )),
+        _ => Ok(text.into()),
+    }
+}

@@ -1,0 +1,38 @@
+//! `photonvdb inspect`: what is in a file, for people or as JSON. The first bytes tell the kind of file,
+//! whatever its name; what is neither OpenVDB nor OpenEXR is taken for a scene.
+
+mod exr;
+mod scene;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::args::InspectArguments;
+use super::error::CliError;
+
+/// First bytes of an OpenEXR file.
+const EXR_MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
+
+/// Shows what the arguments name.
+pub fn run(arguments: &InspectArguments) -> Result<(), CliError> {
+    let path = &arguments.file;
+    let start = first_bytes(path)?;
+    if start.starts_with(EXR_MAGIC) || has_extension(path, "exr") {
+        exr::inspect(path, arguments.json)
+    } else {
+        scene::inspect(path, arguments.json)
+    }
+}
+
+fn first_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(8).read_to_end(&mut bytes))
+        .map_err(|source| CliError::Read { path: path.to_path_buf(), source })?;
+    Ok(bytes)
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}

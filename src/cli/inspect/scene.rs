@@ -1,0 +1,31 @@
+//! A scene: its plan.
+
+use std::path::Path;
+
+use photonvdb::scene::{Plan, Scene};
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::print_to_stdout;
+
+/// Shows what the scene at `path` needs.
+pub fn inspect(path: &Path, as_json: bool) -> Result<(), CliError> {
+    let scene = Scene::load(path)?;
+    let plan = Plan::of(&scene);
+    if as_json {
+        let value = json!({
+            "plan": plan,
+            "scene_hash": format!("{:016x}", scene.hash),
+            "warnings": scene.warnings,
+        });
+        return print_to_stdout(&format!("{value:#}\n"));
+    }
+    let warnings: String =
+        scene.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
+    let [width, height] = [scene.camera.width, scene.camera.height];
+    print_to_stdout(&format!(
+        "{}: {width} x {height} pixels, hash {:016x}\n{plan}\n{warnings}",
+        path.display(),
+        scene.hash
+    ))
+}

@@ -1,0 +1,52 @@
+//! The command line.
+//!
+//! [`args`] says what can be typed; each command has a module that turns its arguments into library calls
+//! and files. Results go to files or, asked for, to stdout; everything meant for people goes to stderr.
+//! Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.
+
+mod args;
+mod count;
+mod error;
+mod inspect;
+mod interrupt;
+mod progress;
+mod render;
+mod report;
+mod resources;
+mod settings;
+mod summary;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use error::CliError;
+
+/// Bad input or usage, as clap's own errors.
+const BAD_INPUT: u8 = 2;
+
+/// Runs the command typed.
+pub fn run() -> ExitCode {
+    let finished = match Arguments::parse().command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+    };
+    match finished {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// Writes machine-readable output. A reader that has seen enough and closed the pipe is no error.
+fn print_to_stdout(text: &str) -> Result<(), CliError> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,69 @@
+//! Progress bars: one a stage on a terminal, nothing where stderr is piped or quiet is asked for.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{PoisonError, RwLock};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use photonvdb::render::{Observer, Stage};
+
+/// Shows the stages of a render and passes Ctrl-C on to it.
+pub struct Progress {
+    bar: RwLock<ProgressBar>,
+    pass: AtomicU32,
+    passes: u32,
+    quiet: bool,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Progress {
+    /// For a render of `passes` passes that ends once `interrupted` is true.
+    pub fn new(passes: u32, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+        let bar = RwLock::new(ProgressBar::hidden());
+        Self { bar, pass: AtomicU32::new(0), passes, quiet, interrupted }
+    }
+
+    fn start_bar(&self, stage: Stage, total: u64) -> ProgressBar {
+        // `stderr` draws nothing where it is no terminal.
+        let target =
+            if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(total), target);
+        let pass = self.pass.load(Ordering::Relaxed);
+        let prefix =
+            if self.passes > 1 { format!("pass {pass}/{} ", self.passes) } else { String::new() };
+        let template = "{prefix}{msg:6} [{wide_bar}] {percent:>3}% {eta:>4}";
+        bar.set_style(
+            ProgressStyle::with_template(template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("=> "),
+        );
+        bar.set_prefix(prefix);
+        bar.set_message(match stage {
+            Stage::Trace => "trace",
+            Stage::Build => "build",
+            Stage::Gather => "gather",
+        });
+        bar
+    }
+}
+
+impl Observer for Progress {
+    fn stage_started(&self, stage: Stage, total: u64) {
+        if stage == Stage::Trace {
+            self.pass.fetch_add(1, Ordering::Relaxed);
+        }
+        *self.bar.write().unwrap_or_else(PoisonError::into_inner) = self.start_bar(stage, total);
+    }
+
+    fn advanced(&self, steps: u64) {
+        self.bar.read().unwrap_or_else(PoisonError::into_inner).inc(steps);
+    }
+
+    fn stage_finished(&self, _: Stage) {
+        self.bar.read().unwrap_or_else(PoisonError::into_inner).finish_and_clear();
+    }
+
+    fn cancelled(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,127 @@
+//! `photonvdb render`: a scene in, an image and a report out.
+
+use std::path::Path;
+use std::time::Instant;
+
+use photonvdb::film::{
+    FilmError, RgbImage, check_writable, compare, read_rgb, write_exr, write_preview_png,
+};
+use photonvdb::render::{RenderOptions, Rendering, render};
+use photonvdb::scene::{Plan, Scene};
+
+use super::args::RenderArguments;
+use super::error::CliError;
+use super::interrupt;
+use super::progress::Progress;
+use super::report::{Comparison, Report, Seconds, is_stdout, write_json};
+use super::resources::{cpu_seconds, peak_memory_bytes};
+use super::settings::Settings;
+use super::summary::Summary;
+
+/// Renders what the arguments ask for.
+pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
+    let started = Instant::now();
+    let summary = Summary { quiet: arguments.quiet };
+    // What can fail must fail before the work, not after it.
+    check_outputs(arguments)?;
+    let scene = load_scene(arguments)?;
+    let reference = load_reference(arguments, &scene)?;
+    let plan = Plan::of(&scene);
+    summary.plan(&scene, &plan);
+    let load = started.elapsed().as_secs_f64();
+
+    let pool = thread_pool(arguments.threads)?;
+    let settings =
+        Settings::of(&arguments.scene, &scene, arguments.passes, pool.current_num_threads());
+    let progress = Progress::new(arguments.passes, arguments.quiet, interrupt::catch()?);
+    let options = RenderOptions { passes: arguments.passes };
+    let rendering = pool.install(|| render(&scene, &options, &progress))?;
+
+    let made = &rendering.report;
+    if made.passes_done < arguments.passes {
+        summary.interrupted(made.passes_done, arguments.passes);
+    }
+    let write_started = Instant::now();
+    pool.install(|| write_images(arguments, &settings, &rendering))?;
+    let mut report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        plan,
+        settings,
+        passes_done: made.passes_done,
+        photons: made.into(),
+        power: made.into(),
+        seconds: Seconds {
+            load,
+            trace: made.seconds.trace,
+            build: made.seconds.build,
+            gather: made.seconds.gather,
+            write: write_started.elapsed().as_secs_f64(),
+            total: 0.0,
+        },
+        cpu_seconds: cpu_seconds(),
+        peak_memory_bytes: peak_memory_bytes(),
+        estimated_relative_error: None,
+        comparison: None,
+    };
+    if let Some((path, reference)) = reference {
+        let error = compare(&RgbImage::from(&rendering.film), &reference)?;
+        report.comparison = Some(Comparison::new(path, error));
+    }
+    report.seconds.total = started.elapsed().as_secs_f64();
+    if let Some(path) = &arguments.report {
+        write_json(path, &report)?;
+    }
+    summary.times(&report.seconds, &report.photons);
+    report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
+    summary.written(arguments);
+    Ok(())
+}
+
+fn check_outputs(arguments: &RenderArguments) -> Result<(), FilmError> {
+    let report = arguments.report.as_deref().filter(|path| !is_stdout(path));
+    let files = [Some(arguments.output.as_path()), arguments.preview.as_deref(), report];
+    files.into_iter().flatten().try_for_each(check_writable)
+}
+
+fn load_scene(arguments: &RenderArguments) -> Result<Scene, CliError> {
+    let mut scene = Scene::load_with(&arguments.scene, &arguments.overrides())?;
+    scene.render.photons_only |= arguments.photons_only;
+    Ok(scene)
+}
+
+fn load_reference<'a>(
+    arguments: &'a RenderArguments,
+    scene: &Scene,
+) -> Result<Option<(&'a Path, RgbImage)>, CliError> {
+    let Some(path) = arguments.reference.as_deref() else { return Ok(None) };
+    let reference = read_rgb(path)?;
+    let image = [scene.camera.width, scene.camera.height];
+    if image != [reference.width, reference.height] {
+        let reference = [reference.width, reference.height];
+        return Err(FilmError::SizeMismatch { image, reference }.into());
+    }
+    Ok(Some((path, reference)))
+}
+
+fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool, CliError> {
+    // 0 leaves the number to rayon: one a core, or what RAYON_NUM_THREADS says.
+    let threads = threads.unwrap_or(0);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads as usize)
+        .build()
+        .map_err(|source| CliError::Threads { threads, source })
+}
+
+fn write_images(
+    arguments: &RenderArguments,
+    settings: &Settings,
+    rendering: &Rendering,
+) -> Result<(), FilmError> {
+    let made = &rendering.report;
+    let metadata = settings.metadata(made.emitted_count, made.passes_done);
+    write_exr(&arguments.output, &rendering.film, &arguments.extra_layers(), &metadata)?;
+    match &arguments.preview {
+        Some(path) => write_preview_png(path, &rendering.film, None),
+        None => Ok(()),
+    }
+}

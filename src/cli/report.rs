@@ -1,0 +1,121 @@
+//! The machine-readable report of a render.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use photonvdb::film::{ImageError, write_beside};
+use photonvdb::render::RenderReport;
+use photonvdb::scene::Plan;
+use serde::Serialize;
+
+use super::error::CliError;
+use super::print_to_stdout;
+use super::settings::Settings;
+
+/// What `--report` writes. Figures that are unknown are `null`.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// Of the program.
+    pub version: &'static str,
+    /// What the scene needed.
+    pub plan: Plan,
+    /// What determines the image.
+    pub settings: Settings,
+    /// Passes completed: fewer than asked for if Ctrl-C was pressed.
+    pub passes_done: u32,
+    /// Over all passes.
+    pub photons: PhotonCounts,
+    /// Per channel \[W\].
+    pub power: Power,
+    /// Wall-clock time \[s\].
+    pub seconds: Seconds,
+    /// Processor time of all threads \[s\].
+    pub cpu_seconds: Option<f64>,
+    /// The most memory ever held \[bytes\].
+    pub peak_memory_bytes: Option<u64>,
+    /// Not estimated without a reference.
+    pub estimated_relative_error: Option<f64>,
+    /// Against the reference, if one was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+}
+
+/// Photons over all passes.
+#[derive(Debug, Serialize)]
+pub struct PhotonCounts {
+    pub emitted: u64,
+    pub stored: u64,
+}
+
+/// Where the power of the photons went, per channel \[W\]: emitted = absorbed + escaped + truncated + resampled.
+#[derive(Debug, Serialize)]
+pub struct Power {
+    pub emitted: [f64; 3],
+    pub absorbed: [f64; 3],
+    pub escaped: [f64; 3],
+    pub truncated: [f64; 3],
+    pub resampled: [f64; 3],
+}
+
+/// Wall-clock time of each step \[s\].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Seconds {
+    pub load: f64,
+    pub trace: f64,
+    pub build: f64,
+    pub gather: f64,
+    pub write: f64,
+    pub total: f64,
+}
+
+/// How far the image is from a reference.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    pub reference: PathBuf,
+    pub mean_ratio: f64,
+    pub rel_rmse: f64,
+    pub block_rel_rms: f64,
+}
+
+impl Comparison {
+    /// The figures against the image at `reference`.
+    pub fn new(reference: &Path, error: ImageError) -> Self {
+        let ImageError { mean_ratio, rel_rmse, block_rel_rms } = error;
+        Self { reference: reference.to_path_buf(), mean_ratio, rel_rmse, block_rel_rms }
+    }
+}
+
+impl From<&RenderReport> for PhotonCounts {
+    fn from(report: &RenderReport) -> Self {
+        Self { emitted: report.emitted_count, stored: report.stored_count }
+    }
+}
+
+impl From<&RenderReport> for Power {
+    fn from(report: &RenderReport) -> Self {
+        let power = &report.power;
+        Self {
+            emitted: power.emitted.to_array(),
+            absorbed: power.absorbed.to_array(),
+            escaped: power.escaped.to_array(),
+            truncated: power.truncated.to_array(),
+            resampled: power.resampled.to_array(),
+        }
+    }
+}
+
+/// Writes a value as indented JSON to `path`, or to stdout where `path` is `-`.
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
+    let json =
+        serde_json::to_string_pretty(value).map_err(|error| CliError::Stdout(error.into()))?;
+    if is_stdout(path) {
+        return print_to_stdout(&(json + "\n"));
+    }
+    write_beside(path, |file| writeln!(file, "{json}"))?;
+    Ok(())
+}
+
+/// Whether a path stands for stdout.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}

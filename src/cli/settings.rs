@@ -1,0 +1,70 @@
+//! The settings of a render, once for the report and once for the image's metadata.
+
+use std::path::Path;
+
+use photonvdb::film::RenderMetadata;
+use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
+use serde::Serialize;
+use serde_json::Value;
+
+/// Everything that determines the image, and the number of threads, which does not.
+#[derive(Clone, Debug, Serialize)]
+pub struct Settings {
+    /// Name of the scene file, without its directory.
+    pub scene: String,
+    /// Of all values and files of the scene, in hexadecimal.
+    pub scene_hash: String,
+    /// Passes asked for.
+    pub passes: u32,
+    /// Threads used.
+    pub threads: usize,
+    /// Width and height \[pixels\].
+    pub resolution: [usize; 2],
+    /// `[photons]` of the scene, overrides applied.
+    pub photons: PhotonSettings,
+    /// `[estimate]`
+    pub estimate: EstimateSettings,
+    /// `[render]`
+    pub render: RenderSettings,
+}
+
+impl Settings {
+    /// The settings of a scene as it is rendered.
+    pub fn of(path: &Path, scene: &Scene, passes: u32, threads: usize) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        Self {
+            scene: name.to_string_lossy().into_owned(),
+            scene_hash: format!("{:016x}", scene.hash),
+            passes,
+            threads,
+            resolution: [scene.camera.width, scene.camera.height],
+            photons: scene.photons,
+            estimate: scene.estimate,
+            render: scene.render,
+        }
+    }
+
+    /// The settings as attributes of the image, named as in the scene file (`photons.seed`). The number
+    /// of threads stays out: images are the same for any.
+    pub fn metadata(&self, photons_emitted: u64, passes_done: u32) -> RenderMetadata {
+        let mut metadata = RenderMetadata::new();
+        metadata.set("version", env!("CARGO_PKG_VERSION"));
+        metadata.set("scene", &self.scene);
+        metadata.set("scene_hash", &self.scene_hash);
+        metadata.set("passes", passes_done);
+        metadata.set("photons_emitted", photons_emitted);
+        metadata.set("camera.resolution", format!("{}x{}", self.resolution[0], self.resolution[1]));
+        for (section, values) in [
+            ("photons", serde_json::to_value(self.photons)),
+            ("estimate", serde_json::to_value(self.estimate)),
+            ("render", serde_json::to_value(self.render)),
+        ] {
+            let Ok(Value::Object(values)) = values else { continue };
+            for (key, value) in values {
+                let text = value.as_str().map_or_else(|| value.to_string(), str::to_string);
+                metadata.set(&format!("{section}.{key}"), text);
+            }
+        }
+        metadata
+    }
+}

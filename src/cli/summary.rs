@@ -1,0 +1,77 @@
+//! What a render says to people, on stderr.
+
+use photonvdb::scene::{Plan, Scene};
+
+use super::args::RenderArguments;
+use super::report::{Comparison, PhotonCounts, Seconds, is_stdout};
+
+/// Speaks unless told to be quiet.
+#[derive(Clone, Copy)]
+pub struct Summary {
+    pub quiet: bool,
+}
+
+impl Summary {
+    /// What was mended on loading, and what is going to be done.
+    pub fn plan(self, scene: &Scene, plan: &Plan) {
+        for warning in &scene.warnings {
+            self.line(&format!("warning: {warning}"));
+        }
+        self.line(&plan.to_string());
+    }
+
+    /// That fewer passes were made than asked for.
+    pub fn interrupted(self, passes_done: u32, passes: u32) {
+        self.line(&format!("ended after pass {passes_done} of {passes}"));
+    }
+
+    /// Where the time went.
+    pub fn times(self, seconds: &Seconds, photons: &PhotonCounts) {
+        let Seconds { load, trace, build, gather, write, total } = seconds;
+        self.line(&format!(
+            "{total:.2} s: load {load:.2}, trace {trace:.2}, build {build:.2}, gather {gather:.2}, write {write:.2}"
+        ));
+        let speed = photons.emitted as f64 / trace.max(f64::MIN_POSITIVE);
+        self.line(&format!(
+            "{} photons emitted, {} stored, {} emitted a second",
+            photons.emitted,
+            photons.stored,
+            rounded(speed)
+        ));
+    }
+
+    /// How far the image is from its reference.
+    pub fn comparison(self, comparison: &Comparison) {
+        self.line(&format!(
+            "against {}: mean {:.4} of the reference, relative RMSE {:.4}, {:.4} in blocks of 16",
+            comparison.reference.display(),
+            comparison.mean_ratio,
+            comparison.rel_rmse,
+            comparison.block_rel_rms
+        ));
+    }
+
+    /// What was written.
+    pub fn written(self, arguments: &RenderArguments) {
+        let report = arguments.report.as_ref().filter(|path| !is_stdout(path));
+        let files = [Some(&arguments.output), arguments.preview.as_ref(), report];
+        let names: Vec<_> =
+            files.into_iter().flatten().map(|path| path.display().to_string()).collect();
+        self.line(&format!("wrote {}", names.join(", ")));
+    }
+
+    fn line(self, text: &str) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+}
+
+/// A speed for people: `812`, `35 thousand` or `1.2 million`.
+fn rounded(value: f64) -> String {
+    match value {
+        _ if value >= 1e6 => format!("{:.1} million", value / 1e6),
+        _ if value >= 1e4 => format!("{:.0} thousand", value / 1e3),
+        _ => format!("{value:.0}"),
+    }
+}

@@ -1,0 +1,73 @@
+//! `photonvdb inspect` through the binary.
+
+mod cli_run;
+
+use std::fs;
+
+use cli_run::Workspace;
+use serde_json::Value;
+
+#[test]
+fn a_scene_shows_its_plan() {
+    let work = Workspace::new();
+    let run = work.run("inspect fog.toml");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for part in ["24 x 16", "homogeneous", "1 point light", "k = 100"] {
+        assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
+    }
+    let plan: Value = serde_json::from_str(&work.run("inspect fog.toml --json").stdout).unwrap();
+    assert_eq!(plan["plan"]["medium"], "homogeneous");
+    assert_eq!(plan["plan"]["lights"]["point"], 1);
+    assert_eq!(work.names(), ["fog.toml"]);
+}
+
+#[test]
+fn an_image_names_the_scene_it_shows() {
+    let work = Workspace::new();
+    work.run("render fog.toml -o fog.exr");
+    let json = |name: &str| -> Value {
+        serde_json::from_str(&work.run(&format!("inspect {name} --json")).stdout).unwrap()
+    };
+    let hash = &json("fog.toml")["scene_hash"];
+    assert_eq!(hash.as_str().map(str::len), Some(16));
+    assert_eq!(json("fog.exr")["parts"][0]["metadata"]["photonvdb:scene_hash"], *hash);
+}
+
+#[test]
+fn an_exr_shows_layers_and_metadata() {
+    let work = Workspace::new();
+    work.run("render fog.toml -o fog.exr --seed 5");
+    // The content tells the kind, not the name.
+    fs::rename(work.path("fog.exr"), work.path("image")).unwrap();
+    let run = work.run("inspect image");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for part in ["24 x 16", "single_scatter", "B G R", "photonvdb:photons.seed", "fog.toml"] {
+        assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
+    }
+    let description: Value =
+        serde_json::from_str(&work.run("inspect image --json").stdout).unwrap();
+    let part = &description["parts"][0];
+    assert_eq!(part["metadata"]["photonvdb:photons.seed"], "5");
+    assert_eq!(part["layers"][0]["channels"][0], "A");
+    assert_eq!(part["channels"].as_array().map(Vec::len), Some(16));
+}
+
+#[test]
+fn unknown_and_damaged_files_are_errors() {
+    let work = Workspace::new();
+    work.run("inspect missing.exr").fails_with("cannot read missing.exr");
+    fs::write(work.path("short.exr"), [0x76, 0x2f, 0x31, 0x01, 2]).unwrap();
+    work.run("inspect short.exr").fails_with("short.exr is not an intact EXR image");
+    fs::write(work.path("notes.txt"), "hello").unwrap();
+    work.run("inspect notes.txt").fails_with("notes.txt");
+    work.run("inspect .").fails_with("cannot read .");
+    work.run("inspect").fails_with("<FILE>");
+}
+
+#[test]
+fn no_command_shows_the_way() {
+    let work = Workspace::new();
+    let run = work.run("");
+    assert_eq!(run.code, Some(2));
+    assert!(run.stderr.contains("Usage: photonvdb"), "{}", run.stderr);
+}
