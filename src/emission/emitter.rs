@@ -152,6 +152,11 @@ impl<'a> Emitter<'a> {
         self.power
     }
 
+    /// Primary dimensions that lead to a ray: 2 or 4.
+    pub fn dimensions(&self) -> usize {
+        self.extents.len()
+    }
+
     /// Sizes in the medium of the primary dimensions, that of the first flight last \[m\].
     pub fn extents(&self, mean_free_path: f64) -> Vec<f64> {
         // A quantile interval dw of the flight is exp(t / mfp) mfp dw long; taken at the typical depth.

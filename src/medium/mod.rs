@@ -57,6 +57,15 @@ pub trait Extinction: Sync {
     /// Integral of sigma_t over the span, exact up to rounding.
     fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb;
 
+    /// Probability that a photon of the given power collides within the span: 1 - T, for a chromatic medium
+    /// averaged over the channels' shares of the power.
+    fn opacity(&self, ray: &Ray, span: Span, power: Rgb) -> f64 {
+        let depth = self.optical_depth(ray, span);
+        let opacity = Rgb::new(-(-depth.x).exp_m1(), -(-depth.y).exp_m1(), -(-depth.z).exp_m1());
+        let total = power.element_sum();
+        if total > 0.0 { opacity.dot(power) / total } else { opacity.element_sum() / 3.0 }
+    }
+
     /// Draws the next collision of a photon of the given power: analytic in uniform media, delta
     /// tracking with local majorants in grids.
     fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight;

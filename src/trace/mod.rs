@@ -1,6 +1,6 @@
 //! Tracing: from emitted photons to photons stored at collisions.
 //!
-//! A photon flies until it collides (analytically in uniform media, by delta tracking in grids), is stored with
+//! A photon flies until it collides (its first flight exactly inverted, so that strata hold; then analytically in uniform media, by delta tracking in grids), is stored with
 //! its power before the albedo, and scatters. It survives a collision with the probability that its power
 //! keeps, so that photons stay equally strong and the mean is exact. Photons are traced in fixed shares
 //! that are merged in order: the result does not depend on the number of threads.
@@ -16,7 +16,7 @@ pub use photon::Photon;
 use rayon::prelude::*;
 
 use crate::emission::{Emission, EmittedPhoton};
-use crate::math::{Ray, Rgb, max_channel, uniform};
+use crate::math::{Ray, Rgb, Span, max_channel, uniform};
 use crate::medium::{Extinction, Flight, Medium};
 
 /// Photons traced by one task: small enough to balance the load, large enough to be worth a task.
@@ -110,13 +110,20 @@ impl<'a, E: Extinction> Path<'a, E> {
 
     /// Follows one photon from its light to its end.
     fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, flight_quantile, mut random } = photon;
+        let EmittedPhoton { mut ray, mut power, flight_quantile, collision_boost, mut random } =
+            photon;
         self.balance.emitted += power;
         for order in 0.. {
             let Some(span) = self.medium.bounds.intersect(&ray) else { break };
-            let flight = match flight_quantile {
-                Some(u) if order == 0 => self.extinction.invert_flight(&ray, span, power, u),
-                _ => self.extinction.sample_flight(&ray, span, power, &mut random),
+            let flight = if order == 0 {
+                let boosted =
+                    self.first_flight(&ray, span, power, flight_quantile, collision_boost);
+                let (flight, share) = boosted;
+                self.balance.escaped += power * (1.0 - share);
+                power *= share;
+                flight
+            } else {
+                self.extinction.sample_flight(&ray, span, power, &mut random)
             };
             let distance = match flight {
                 Flight::Escape { weight } => {
@@ -146,6 +153,19 @@ impl<'a, E: Extinction> Path<'a, E> {
             ray.direction = self.medium.phase.sample_direction(ray.direction, &mut random);
         }
         self.balance.escaped += power;
+    }
+
+    /// The first flight, made to end in a collision more often than by nature: with opacity o and probability p >= o, a
+    /// collision carries the share o / p of the power, at quantile o u / p of the flight; else all of it escapes.
+    /// Returns the flight and the share; the rest of the power has escaped.
+    fn first_flight(&self, ray: &Ray, span: Span, power: Rgb, u: f64, boost: f64) -> (Flight, f64) {
+        let opacity = self.extinction.opacity(ray, span, power);
+        let probability = (opacity * boost).min(1.0);
+        if !(u < probability) {
+            return (Flight::Escape { weight: Rgb::ONE }, 1.0);
+        }
+        let quantile = opacity * (u / probability);
+        (self.extinction.invert_flight(ray, span, power, quantile), opacity / probability)
     }
 
     /// Applies the weight of a flight, which is 1 but in chromatic media.
