@@ -76,7 +76,7 @@ impl Cubic {
                 low = u;
             }
             let newton = u - excess / value(coefficients, u);
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
             let step = (next - u).abs();
             u = next;
             if step <= 1e-15 || high - low <= f64::EPSILON * high {
