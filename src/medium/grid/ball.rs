@@ -5,7 +5,7 @@
 //! relative error (root of the mean square over turns and over 60 fields of each kind, centred on the ball) is
 //! 1 % for linear fields, 3 % for a Gaussian bump of a third of the radius, 6 % for a linear edge and
 //! 11 % for a plane beyond which there is nothing; independent points have 6, 20, 25 and 24 %. The mean
-//! over all turns is right to half a percent.
+//! over all turns is right to 1 %.
 
 use std::f64::consts::TAU;
 
