@@ -156,7 +156,7 @@ impl Extinction for GridExtinction {
             profile.push(ProfileKnot {
                 distance: piece.span.end,
                 optical_depth: self.density_scale * depth,
-                sigma_t: piece.density.values.map(|density| self.density_scale * density),
+                sigma_t: piece.density.values().map(|density| self.density_scale * density),
             });
             ControlFlow::Continue(())
         });
