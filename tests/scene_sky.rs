@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use exr::prelude::write_rgb_file;
+use glam::DVec3;
 use photonvdb::light::{Environment, Light};
 use photonvdb::scene::Scene;
 
@@ -38,13 +39,15 @@ fn write_scene(folder: &Path, odd_pixel: (f32, f32, f32)) -> std::path::PathBuf 
 fn a_sky_is_found_beside_the_scene_and_scaled() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Scene::load(&write_scene(folder.path(), (8.0, 8.0, 8.0))).unwrap();
-    let [Light::Environment(Environment::Image(image))] = &scene.lights[..] else {
+    let [Light::Environment(sky @ Environment::Image(_))] = &scene.lights[..] else {
         panic!("{:?}", scene.lights)
     };
-    assert_eq!((image.width, image.height), (4, 2));
-    assert_eq!(image.pixels[3], [6.0, 0.0, 0.5]);
-    assert_eq!(image.pixels[6], [16.0, 8.0, 4.0]);
-    assert!((image.rotation - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    // Column 3 of 4 has its middle 135 degrees right of the image's centre, which looks along -z; the rotation
+    // takes it back by 90. Row 0 is above the horizon.
+    let right_ahead = DVec3::new(1.0, 0.5, -1.0).normalize();
+    assert_eq!(sky.radiance(right_ahead), DVec3::new(6.0, 0.0, 0.5));
+    let left_ahead_below = DVec3::new(-1.0, -0.5, -1.0).normalize();
+    assert_eq!(sky.radiance(left_ahead_below), DVec3::new(16.0, 8.0, 4.0));
 }
 
 #[test]

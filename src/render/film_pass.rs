@@ -6,7 +6,7 @@ use crate::emission::Strata;
 use crate::film::{Film, Pixel};
 use crate::math::{DVec2, Random, Rgb, Stream, uniform};
 use crate::medium::Extinction;
-use crate::render::pixel_peak::polar_sample;
+use crate::render::pixel_peak::{WeightedPlace, polar_sample};
 use crate::render::{LitMedium, Observer, Reader};
 use crate::scene::Scene;
 
@@ -15,6 +15,12 @@ const TILE: usize = 16;
 
 /// Rays for the single scattering of a light in the pixel that holds it, a pass.
 const PEAK_RAYS: usize = 256;
+
+/// Rays for the single scattering of a light in pixels near it, where it varies as the inverse distance.
+const SLOPE_RAYS: usize = 64;
+
+/// How near that is \[pixels\]: beyond, a pixel's own rays see less than 10 % of variation.
+const SLOPE_REACH: f64 = 8.0;
 
 /// Adds a pass to the film.
 pub fn add_pass<E: Extinction>(
@@ -75,11 +81,10 @@ struct PixelPass<'a, E> {
 impl<E: Extinction> PixelPass<'_, E> {
     fn pixel(&mut self, x: usize, y: usize, random: &mut Random) -> Pixel {
         let corner = DVec2::new(x as f64, y as f64);
-        let within = |place: DVec2| {
-            (place - corner).cmpge(DVec2::ZERO).all() && (place - corner).cmplt(DVec2::ONE).all()
-        };
+        let middle = corner + DVec2::splat(0.5);
+        let near = |place: DVec2| (place - middle).abs().max_element() <= SLOPE_REACH;
         let peaks: Vec<(usize, DVec2)> =
-            self.peaks.iter().copied().filter(|(_, place)| within(*place)).collect();
+            self.peaks.iter().copied().filter(|(_, place)| near(*place)).collect();
         let skipped: Vec<usize> = peaks.iter().map(|(light, _)| *light).collect();
 
         let samples = self.scene.render.samples_per_pixel;
@@ -91,7 +96,7 @@ impl<E: Extinction> PixelPass<'_, E> {
             let offset = DVec2::new(cell[0].at(uniform(random)), cell[1].at(uniform(random)));
             let place = corner + offset;
             let ray = self.scene.camera.ray(place.x, place.y);
-            let seen = self.reader.radiance(&ray, f64::INFINITY, &skipped, random);
+            let seen = self.reader.light_along(&ray, f64::INFINITY, &skipped, random);
             pixel.single_scatter += seen.single_scatter * share;
             pixel.multiple_scatter += seen.multiple_scatter * share;
             pixel.emission += seen.emission * share;
@@ -110,15 +115,26 @@ impl<E: Extinction> PixelPass<'_, E> {
         pixel
     }
 
-    /// Single scattering of a light over the pixel that holds it.
+    /// Single scattering of a light over a pixel that holds it, or is near it.
     fn peak(&mut self, light: usize, center: DVec2, corner: DVec2, random: &mut Random) -> Rgb {
+        let within =
+            (center - corner).cmpge(DVec2::ZERO).all() && (center - corner).cmplt(DVec2::ONE).all();
+        let count = if within { PEAK_RAYS } else { SLOPE_RAYS };
+        let strata = Strata::new(count as u64, &[1.0, 1.0]);
         let samples = self.scene.render.light_samples;
-        let ray_sum = (0..PEAK_RAYS).map(|index| {
-            let sample = polar_sample(center, corner, index, PEAK_RAYS, random);
+        let mut sum = Rgb::ZERO;
+        for index in 0..count {
+            let sample = if within {
+                polar_sample(center, corner, index, count, random)
+            } else {
+                let cell = strata.cell(index as u64);
+                let offset = DVec2::new(cell[0].at(uniform(random)), cell[1].at(uniform(random)));
+                WeightedPlace { position: corner + offset, weight: 1.0 }
+            };
             let ray = self.scene.camera.ray(sample.position.x, sample.position.y);
-            self.reader.single_scatter_of(&ray, light, samples, random) * sample.weight
-        });
-        ray_sum.sum::<Rgb>() / PEAK_RAYS as f64
+            sum += self.reader.single_scatter_of(&ray, light, samples, random) * sample.weight;
+        }
+        sum / count as f64
     }
 }
 

@@ -1,11 +1,12 @@
 //! Rendering: passes of tracing, building and gathering, averaged on a film.
 //!
 //! [`LitMedium`] is a medium with its photon map, ready to be read along any ray: the film is made of such
-//! readings, and a host renderer can ask for its own.
+//! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
 mod distances;
 mod film_pass;
 mod lit_medium;
+mod lit_scene;
 mod observer;
 mod pixel_peak;
 mod reader;
@@ -14,6 +15,7 @@ mod shadow;
 mod single_scatter;
 
 pub use lit_medium::LitMedium;
+pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
 pub use reader::{RayRadiance, Reader};
 pub use report::{RenderReport, StageSeconds};

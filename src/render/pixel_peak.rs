@@ -10,7 +10,7 @@ use crate::math::{DVec2, Random, uniform};
 
 /// A sub-pixel position with its weight: the inverse of its density over the unit pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct PolarSample {
+pub struct WeightedPlace {
     /// In pixels from the image's top left corner.
     pub position: DVec2,
     /// Mean 1 over samples.
@@ -25,12 +25,12 @@ pub fn polar_sample(
     index: usize,
     count: usize,
     random: &mut Random,
-) -> PolarSample {
+) -> WeightedPlace {
     let angle = 2.0 * PI * (index as f64 + uniform(random)) / count as f64;
     let direction = DVec2::from_angle(angle);
     let edge = distance_to_edge(center - corner, direction);
     let rho = edge * uniform(random);
-    PolarSample { position: center + direction * rho, weight: 2.0 * PI * rho * edge }
+    WeightedPlace { position: center + direction * rho, weight: 2.0 * PI * rho * edge }
 }
 
 /// From a point of the unit square to its edge.

@@ -1,7 +1,7 @@
 //! Reading a lit medium along rays.
 
-use crate::estimate::{Estimate, Estimator};
-use crate::math::{DVec3, Random, Ray, Rgb, Span, exp, uniform};
+use crate::estimate::Estimator;
+use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
 use crate::render::single_scatter::ScatteringRay;
@@ -26,7 +26,7 @@ pub struct RayRadiance {
     pub radius_sum: f64,
 }
 
-/// Reads a lit medium, from one thread: light along rays, fluence and power density at places.
+/// Reads a lit medium, from one thread: light along rays.
 pub struct Reader<'a, E> {
     scene: &'a Scene,
     extinction: &'a E,
@@ -40,20 +40,14 @@ impl<'a, E: Extinction> Reader<'a, E> {
         Self { scene, extinction, estimator, profile: RayProfile::default() }
     }
 
-    /// Fluence at a place \[W/m^2\], of the photons in the map: scattered light, unless the scene asks for
-    /// everything from photons.
-    pub fn fluence(&mut self, place: DVec3) -> Estimate {
-        self.estimator.fluence(place)
-    }
-
-    /// Power density at a place \[W/m^3\], of the photons in the map.
-    pub fn power_density(&mut self, place: DVec3) -> Estimate {
-        self.estimator.power_density(place)
+    /// Estimates at places.
+    pub fn estimator(&mut self) -> &mut Estimator<'a, E> {
+        &mut self.estimator
     }
 
     /// Light that travels back along a ray from up to `max_distance` \[m\] ahead. `skipped` names lights whose
     /// single scattering is computed elsewhere.
-    pub fn radiance(
+    pub fn light_along(
         &mut self,
         ray: &Ray,
         max_distance: f64,

@@ -1,0 +1,88 @@
+//! A scene's photon map for a host renderer: built once, read from many threads.
+
+use crate::estimate::Estimate;
+use crate::math::{DVec3, Random, Ray};
+use crate::medium::{
+    ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction,
+};
+use crate::render::{LitMedium, Observer, RayRadiance, Reader, RenderError, RenderReport};
+use crate::scene::Scene;
+
+/// A scene with its photon map, whatever its medium. Shared by all threads; each takes a reader of its own.
+#[derive(Debug)]
+pub struct LitScene<'a> {
+    lit: Lit<'a>,
+    report: RenderReport,
+}
+
+#[derive(Debug)]
+enum Lit<'a> {
+    Uniform(LitMedium<'a, UniformExtinction>),
+    Chromatic(LitMedium<'a, ChromaticExtinction>),
+    Grid(LitMedium<'a, GridExtinction>),
+}
+
+/// Reads a lit scene, from one thread.
+pub trait LightReader {
+    /// Light that travels back along a ray from up to `max_distance` \[m\] ahead, and the transmittance of that
+    /// segment.
+    fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance;
+
+    /// Fluence at a place \[W/m^2\], of the photons in the map: scattered light, unless the scene asks for
+    /// everything from photons.
+    fn fluence(&mut self, place: DVec3) -> Estimate;
+
+    /// Power density at a place \[W/m^3\], of the photons in the map.
+    fn power_density(&mut self, place: DVec3) -> Estimate;
+}
+
+impl<'a> LitScene<'a> {
+    /// Emits and traces the scene's photons and builds their map.
+    ///
+    /// # Errors
+    /// More photons than memory allows.
+    pub fn prepare(scene: &'a Scene, observer: &dyn Observer) -> Result<Self, RenderError> {
+        let mut report = RenderReport::default();
+        let seed = scene.photons.seed;
+        let lit = match &scene.medium.extinction {
+            MediumExtinction::Uniform(uniform) => {
+                Lit::Uniform(LitMedium::prepare(scene, uniform, seed, observer, &mut report)?)
+            }
+            MediumExtinction::Chromatic(chromatic) => {
+                Lit::Chromatic(LitMedium::prepare(scene, chromatic, seed, observer, &mut report)?)
+            }
+            MediumExtinction::Grid(grid) => {
+                Lit::Grid(LitMedium::prepare(scene, &**grid, seed, observer, &mut report)?)
+            }
+        };
+        Ok(Self { lit, report })
+    }
+
+    /// A reader for one thread.
+    pub fn reader(&self) -> Box<dyn LightReader + '_> {
+        match &self.lit {
+            Lit::Uniform(lit) => Box::new(lit.reader()),
+            Lit::Chromatic(lit) => Box::new(lit.reader()),
+            Lit::Grid(lit) => Box::new(lit.reader()),
+        }
+    }
+
+    /// How the map was made: photons, powers, seconds.
+    pub fn report(&self) -> &RenderReport {
+        &self.report
+    }
+}
+
+impl<E: Extinction> LightReader for Reader<'_, E> {
+    fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance {
+        self.light_along(ray, max_distance, &[], random)
+    }
+
+    fn fluence(&mut self, place: DVec3) -> Estimate {
+        self.estimator().fluence(place)
+    }
+
+    fn power_density(&mut self, place: DVec3) -> Estimate {
+        self.estimator().power_density(place)
+    }
+}
