@@ -388,14 +388,14 @@ fn the_extinction_in_a_ball_is_its_mean_times_the_volume() {
         let sum: f64 = (0..256)
             .map(|n| {
                 let phase = f64::from(n) / 256.0;
-                extinction.ball_extinction(&Bounds::Infinite, ball, ceiling, phase)
+                ceiling * extinction.ball_integral(&Bounds::Infinite, ball, ceiling, phase).mass
             })
             .sum();
         sum / 256.0 / ball.volume()
     };
-    assert!((mean(ball(-20.0), f64::INFINITY) - 0.5).abs() < 1e-12);
+    assert!((mean(ball(-20.0), 1.0) - 0.5).abs() < 1e-12);
     assert!((mean(ball(-20.0), 0.2) - 0.2).abs() < 1e-12);
-    assert_eq!(mean(ball(20.0), f64::INFINITY), 0.0);
+    assert_eq!(mean(ball(20.0), 1.0), 0.0);
     // The density falls from 1 to 0 between x = 0 and 2: half of it is beyond x = 1.
-    assert!((mean(ball(1.0), f64::INFINITY) - 0.25).abs() < 0.005);
+    assert!((mean(ball(1.0), 1.0) - 0.25).abs() < 0.005);
 }

@@ -158,6 +158,7 @@ impl RenderArguments {
             k: self.k,
             divisor: self.divisor.clone(),
             resolution: self.resolution,
+            photons_only: self.photons_only.then_some(true),
         }
     }
 

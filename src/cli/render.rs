@@ -85,9 +85,7 @@ fn check_outputs(arguments: &RenderArguments) -> Result<(), FilmError> {
 }
 
 fn load_scene(arguments: &RenderArguments) -> Result<Scene, CliError> {
-    let mut scene = Scene::load_with(&arguments.scene, &arguments.overrides())?;
-    scene.render.photons_only |= arguments.photons_only;
-    Ok(scene)
+    Ok(Scene::load_with(&arguments.scene, &arguments.overrides())?)
 }
 
 fn load_reference<'a>(

@@ -41,7 +41,7 @@ impl Guide {
             }
         }
         let mean = means.iter().sum::<f64>() / means.len() as f64;
-        if !(mean > 0.0) {
+        if mean <= 0.0 {
             return None;
         }
         // The largest of the neighbours: a cell that the medium's edge crosses is not underrated.

@@ -21,7 +21,7 @@ pub use strata::{Interval, MAX_DIMENSIONS, Strata};
 
 use crate::light::Light;
 use crate::math::{DVec2, Random, Ray, Rgb, Stream, uniform};
-use crate::medium::Bounds;
+use crate::medium::{BoostedQuantile, Bounds};
 
 /// How photons are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,10 +41,8 @@ pub struct EmittedPhoton {
     pub ray: Ray,
     /// \[W\], already divided by the number of photons.
     pub power: Rgb,
-    /// Quantile of the first free flight in \[0, 1).
-    pub flight_quantile: f64,
-    /// How many times likelier than by nature the first collision should be, at least 1.
-    pub collision_boost: f64,
+    /// Quantile of the first free flight, and how much likelier its collision is made.
+    pub first_flight: BoostedQuantile,
     /// The stream of the photon's further path.
     pub random: Random,
 }
@@ -132,8 +130,9 @@ impl<'a> Emission<'a> {
         };
         let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d])?;
         let power = power / (light.count as f64 * density);
-        let collision_boost = (light.collision_boost / density).max(1.0);
-        Some(EmittedPhoton { ray, power, flight_quantile, collision_boost, random })
+        let boost = (light.collision_boost / density).max(1.0);
+        let first_flight = BoostedQuantile { u: flight_quantile, boost };
+        Some(EmittedPhoton { ray, power, first_flight, random })
     }
 }
 

@@ -16,8 +16,8 @@ pub use photon::Photon;
 use rayon::prelude::*;
 
 use crate::emission::{Emission, EmittedPhoton};
-use crate::math::{Ray, Rgb, Span, max_channel, uniform};
-use crate::medium::{Extinction, Flight, Medium};
+use crate::math::{Ray, Rgb, max_channel, uniform};
+use crate::medium::{Extinction, Flight, Medium, RayProfile};
 
 /// Photons traced by one task: small enough to balance the load, large enough to be worth a task.
 const SHARE: u64 = 8192;
@@ -95,6 +95,7 @@ struct Path<'a, E> {
     settings: TraceSettings,
     photons: Vec<Photon>,
     balance: PowerBalance,
+    profile: RayProfile,
 }
 
 impl<'a, E: Extinction> Path<'a, E> {
@@ -105,23 +106,23 @@ impl<'a, E: Extinction> Path<'a, E> {
         settings: TraceSettings,
     ) -> Self {
         let (photons, balance) = (Vec::new(), PowerBalance::default());
-        Self { medium, extinction, frame, settings, photons, balance }
+        let profile = RayProfile::default();
+        Self { medium, extinction, frame, settings, photons, balance, profile }
     }
 
     /// Follows one photon from its light to its end.
     fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, flight_quantile, collision_boost, mut random } =
-            photon;
+        let EmittedPhoton { mut ray, mut power, first_flight, mut random } = photon;
         self.balance.emitted += power;
         for order in 0.. {
             let Some(span) = self.medium.bounds.intersect(&ray) else { break };
             let flight = if order == 0 {
+                let profile = &mut self.profile;
                 let boosted =
-                    self.first_flight(&ray, span, power, flight_quantile, collision_boost);
-                let (flight, share) = boosted;
-                self.balance.escaped += power * (1.0 - share);
-                power *= share;
-                flight
+                    self.extinction.boosted_flight(&ray, span, power, first_flight, profile);
+                self.balance.escaped += power * (1.0 - boosted.share);
+                power *= boosted.share;
+                boosted.flight
             } else {
                 self.extinction.sample_flight(&ray, span, power, &mut random)
             };
@@ -143,7 +144,7 @@ impl<'a, E: Extinction> Path<'a, E> {
             }
             let scattered = power * self.medium.albedo;
             let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
-            if survival < 1.0 && !(uniform(&mut random) < survival) {
+            if survival < 1.0 && uniform(&mut random) >= survival {
                 self.balance.absorbed += power;
                 return;
             }
@@ -153,19 +154,6 @@ impl<'a, E: Extinction> Path<'a, E> {
             ray.direction = self.medium.phase.sample_direction(ray.direction, &mut random);
         }
         self.balance.escaped += power;
-    }
-
-    /// The first flight, made to end in a collision more often than by nature: with opacity o and probability p >= o, a
-    /// collision carries the share o / p of the power, at quantile o u / p of the flight; else all of it escapes.
-    /// Returns the flight and the share; the rest of the power has escaped.
-    fn first_flight(&self, ray: &Ray, span: Span, power: Rgb, u: f64, boost: f64) -> (Flight, f64) {
-        let opacity = self.extinction.opacity(ray, span, power);
-        let probability = (opacity * boost).min(1.0);
-        if !(u < probability) {
-            return (Flight::Escape { weight: Rgb::ONE }, 1.0);
-        }
-        let quantile = opacity * (u / probability);
-        (self.extinction.invert_flight(ray, span, power, quantile), opacity / probability)
     }
 
     /// Applies the weight of a flight, which is 1 but in chromatic media.
