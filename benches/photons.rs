@@ -32,16 +32,13 @@ fn medium() -> Medium {
 }
 
 fn trace(medium: &Medium, kind: EmissionKind) -> TracedPhotons {
-    let lights = [Light::Point(PointLight {
-        position: DVec3::new(0.3, 0.4, 0.2),
-        intensity: Rgb::ONE,
-    })];
+    let lights =
+        [Light::Point(PointLight { position: DVec3::new(0.3, 0.4, 0.2), intensity: Rgb::ONE })];
     let opacity = |ray: &Ray| {
         medium.bounds.intersect(ray).map_or(0.0, |span| FOG.opacity(ray, span, Rgb::ONE))
     };
     let emission = Emission::new(&lights, &medium.bounds, opacity, 1.0, kind, PHOTONS, 0);
-    let settings =
-        TraceSettings { max_order: 1000, min_stored_order: 1, max_stored: usize::MAX };
+    let settings = TraceSettings { max_order: 1000, min_stored_order: 1, max_stored: usize::MAX };
     trace_photons(&emission, medium, &FOG, MapFrame::of(medium, None), settings, |_| ())
 }
 
@@ -86,11 +83,8 @@ fn gather_k(bencher: Bencher, k: usize) {
 #[divan::bench(args = ["fog_point", "fog_spot", "smoke_sun"], sample_count = 10)]
 fn render_scene(bencher: Bencher, name: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenes/{name}.toml"));
-    let overrides = Overrides {
-        photons: Some(100_000),
-        resolution: Some([64, 36]),
-        ..Overrides::default()
-    };
+    let overrides =
+        Overrides { photons: Some(100_000), resolution: Some([64, 36]), ..Overrides::default() };
     let Ok(scene) = Scene::load_with(&path, &overrides) else { return };
     let options = RenderOptions { passes: 1 };
     bencher.bench_local(|| render(&scene, &options, &Unobserved).map(|made| made.film.width));
