@@ -188,7 +188,7 @@ fn ball_extinction_200(bencher: Bencher) {
         rays.iter()
             .map(|(ray, span)| {
                 let ball = Ball { center: ray.at(0.5 * (span.start + span.end)), radius: 3.0 };
-                extinction.ball_integral(&Bounds::Infinite, ball, 1e30, 0.3).mass
+                extinction.ball_moments(&Bounds::Infinite, ball, 1e30, 0.3, 0.0).mass
             })
             .sum::<f64>()
     });

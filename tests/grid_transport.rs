@@ -388,7 +388,7 @@ fn the_extinction_in_a_ball_is_its_mean_times_the_volume() {
         let sum: f64 = (0..256)
             .map(|n| {
                 let phase = f64::from(n) / 256.0;
-                ceiling * extinction.ball_integral(&Bounds::Infinite, ball, ceiling, phase).mass
+                ceiling * extinction.ball_moments(&Bounds::Infinite, ball, ceiling, phase, 0.0).mass
             })
             .sum();
         sum / 256.0 / ball.volume()

@@ -15,6 +15,14 @@ pub enum Kernel {
 }
 
 impl Kernel {
+    /// The factor on (r / r_k)^2 that the weight falls by.
+    pub fn falloff(self) -> f64 {
+        match self {
+            Self::Constant => 0.0,
+            Self::Epanechnikov => 1.0,
+        }
+    }
+
     /// The weight at a squared distance relative to the squared radius.
     #[inline]
     pub fn weight(self, relative_squared: f64) -> f64 {

@@ -7,7 +7,8 @@
 //! Fluence divides each photon by sigma_t at its own place. In a grid sigma_t may vanish within the ball, where
 //! no photon can be; photons are therefore weighted by h(sigma_t) / sigma_t with h = min(sigma_t, c), and V
 //! becomes the integral of h over the ball: every h gives the same mean in a constant fluence, and this one
-//! bounds the weights. c is sigma_t at the query.
+//! bounds the weights. c is sigma_t at the query. Where the ball is not filled evenly, photons are weighted besides so
+//! that a linear fluence is read exactly ([`BallMoments`](crate::medium::BallMoments)); power density is the plain estimate.
 
 mod divisor;
 mod kernel;
@@ -126,10 +127,21 @@ impl<'a, E: Extinction> Estimator<'a, E> {
         let sigma_t = extinction.sigma_t(place);
         let ceiling =
             if E::IS_UNIFORM { sigma_t } else { Rgb::splat(ceiling(map, &nearest, sigma_t)) };
+        let ball = Ball { center: place, radius };
+        let falloff = options.kernel.falloff();
+        let moments = extinction.ball_moments(&medium.bounds, ball, ceiling.x, turn, falloff);
+        let to_offset = 1.0 / f64::from(nearest.radius);
         for_weighted(&nearest, *options, |photon, weight| {
             let clipped = match map.sigma_t(photon) {
                 Some(own) => weight * (ceiling.x / f64::from(own)).min(1.0),
                 None => weight,
+            };
+            let clipped = match moments.tilt {
+                DVec3::ZERO => clipped,
+                _ => {
+                    let offset = map.offset(photon, nearest.query).as_dvec3() * to_offset;
+                    clipped * moments.linear_weight(offset)
+                }
             };
             let light = rgb(map.power(photon)) * (clipped * factor(photon));
             match map.order(photon) {
@@ -137,11 +149,8 @@ impl<'a, E: Extinction> Estimator<'a, E> {
                 _ => gathered.multiple += light,
             }
         });
-        let ball = Ball { center: place, radius };
-        let integral = extinction.ball_integral(&medium.bounds, ball, ceiling.x, turn);
-        let mass = options.kernel.mass(integral);
         let per_fluence = |sum: Rgb| {
-            let channel = |c: usize| over_scalar(sum[c], mass * ceiling[c]);
+            let channel = |c: usize| over_scalar(sum[c], moments.mass * ceiling[c]);
             Rgb::new(channel(0), channel(1), channel(2))
         };
         gathered.single = per_fluence(gathered.single);

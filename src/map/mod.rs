@@ -2,7 +2,7 @@
 //!
 //! Photons are sorted along a Morton curve first, so that neighbours in space are neighbours in memory; the
 //! tree is kiddo's immutable one, in the configuration that measured best for coherent queries (flat leaves
-//! of 32, Eytzinger stems). A photon takes 28 bytes, and 4 more for its direction, sigma_t or order each where
+//! of 32, Eytzinger stems). A photon takes 40 bytes, and 4 more for its direction, sigma_t or order each where
 //! the scene needs them.
 
 mod morton;
@@ -12,6 +12,7 @@ mod packed;
 pub use nearest::{Nearest, NearestPhotons, Neighbor};
 pub use packed::PackedDirection;
 
+use glam::Vec3;
 use kiddo::leaf_strategies::FlatVec;
 use kiddo::{Eytzinger, KdTree};
 use rayon::prelude::*;
@@ -38,6 +39,7 @@ pub struct Columns {
 pub struct PhotonMap {
     tree: PhotonTree,
     frame: MapFrame,
+    position: Vec<[f32; 3]>,
     power: Vec<[f32; 3]>,
     direction: Vec<PackedDirection>,
     sigma_t: Vec<f32>,
@@ -73,7 +75,6 @@ impl PhotonMap {
                 count: positions.len(),
                 cause: format!("{error:?}"),
             })?;
-        drop(positions);
         let direction = if columns.direction {
             sorted().map(|p| PackedDirection::new(p.direction)).collect()
         } else {
@@ -84,7 +85,15 @@ impl PhotonMap {
         let order_column =
             if columns.order { sorted().map(|p| p.order).collect() } else { Vec::new() };
         let power = sorted().map(|p| p.power).collect();
-        Ok(Self { tree, frame, power, direction, sigma_t, order: order_column })
+        Ok(Self {
+            tree,
+            frame,
+            position: positions,
+            power,
+            direction,
+            sigma_t,
+            order: order_column,
+        })
     }
 
     /// Photons stored.
@@ -106,10 +115,16 @@ impl PhotonMap {
     pub fn bytes_per_photon(&self) -> usize {
         let tree = 3 * size_of::<f32>() + size_of::<u32>();
         let column = |is_empty: bool, bytes: usize| if is_empty { 0 } else { bytes };
-        tree + size_of::<[f32; 3]>()
+        tree + 2 * size_of::<[f32; 3]>()
             + column(self.direction.is_empty(), size_of::<PackedDirection>())
             + column(self.sigma_t.is_empty(), size_of::<f32>())
             + column(self.order.is_empty(), size_of::<u32>())
+    }
+
+    /// From a place to a photon, both in map coordinates.
+    #[inline]
+    pub fn offset(&self, photon: u32, from: [f32; 3]) -> Vec3 {
+        Vec3::from_array(self.position[photon as usize]) - Vec3::from_array(from)
     }
 
     /// Power of a photon \[W\].

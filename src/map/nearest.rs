@@ -32,6 +32,8 @@ pub struct Nearest<'a> {
     pub complete: bool,
     /// Radius of the ball in map units.
     pub radius: f32,
+    /// Its centre in map coordinates.
+    pub query: [f32; 3],
 }
 
 /// Finds nearest photons, with memory reused from query to query.
@@ -85,7 +87,7 @@ impl<'a> NearestPhotons<'a> {
         let farthest = self.found.last().map_or(0.0, |n| n.distance_squared.sqrt());
         let radius = if complete { farthest } else { limit };
         self.last = complete.then_some((query, radius));
-        Nearest { photons: &self.found, complete, radius: radius.max(RADIUS_FLOOR) }
+        Nearest { photons: &self.found, complete, radius: radius.max(RADIUS_FLOOR), query }
     }
 
     /// All photons within `radius`.

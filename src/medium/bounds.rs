@@ -64,6 +64,19 @@ impl Bounds {
         }
     }
 
+    /// Whether a ball is wholly inside. Parallelepipeds, which only bound a grid, do not know.
+    pub fn holds(&self, ball: Ball) -> bool {
+        match *self {
+            Self::Box { min, max } => {
+                let reach = DVec3::splat(ball.radius);
+                (ball.center - reach).cmpge(min).all() && (ball.center + reach).cmple(max).all()
+            }
+            Self::Sphere { center, radius } => ball.center.distance(center) + ball.radius <= radius,
+            Self::Parallelepiped(_) => false,
+            Self::Infinite => true,
+        }
+    }
+
     /// The smallest ball about the centre that holds the region; `None` if infinite.
     pub fn enclosing_ball(&self) -> Option<Ball> {
         match *self {

@@ -6,7 +6,7 @@
 //! unbiased and never weighs by more than 1 / q_c.
 
 use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp, uniform};
-use crate::medium::{BallIntegral, Bounds, Extinction, Flight, RayProfile};
+use crate::medium::{BallMoments, Bounds, Extinction, Flight, RayProfile};
 
 /// The same sigma_t everywhere and in every channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,14 +48,15 @@ impl Extinction for UniformExtinction {
         profile.set_uniform(span, Rgb::splat(self.sigma_t));
     }
 
-    fn ball_integral(
+    fn ball_moments(
         &self,
         bounds: &Bounds,
         ball: Ball,
         _ceiling: f64,
-        _turn: f64,
-    ) -> BallIntegral {
-        bounds.overlap(ball)
+        turn: f64,
+        falloff: f64,
+    ) -> BallMoments {
+        BallMoments::inside(bounds, ball, turn, falloff)
     }
 }
 
@@ -103,14 +104,15 @@ impl Extinction for ChromaticExtinction {
         profile.set_uniform(span, self.sigma_t);
     }
 
-    fn ball_integral(
+    fn ball_moments(
         &self,
         bounds: &Bounds,
         ball: Ball,
         _ceiling: f64,
-        _turn: f64,
-    ) -> BallIntegral {
-        bounds.overlap(ball)
+        turn: f64,
+        falloff: f64,
+    ) -> BallMoments {
+        BallMoments::inside(bounds, ball, turn, falloff)
     }
 }
 

@@ -4,9 +4,11 @@
 //! phase [`Phase`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
 //! pays nothing for grids.
 
+mod ball_points;
 mod bounds;
 pub mod grid;
 mod homogeneous;
+mod moments;
 mod overlap;
 mod phase;
 mod profile;
@@ -16,6 +18,7 @@ pub mod vdb;
 pub use bounds::{Bounds, Face, Parallelepiped};
 pub use grid::GridExtinction;
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
+pub use moments::BallMoments;
 pub use overlap::BallIntegral;
 pub use phase::{ISOTROPIC, Phase};
 pub use profile::{ProfileKnot, RayProfile};
@@ -97,10 +100,17 @@ pub trait Extinction: Sync {
     /// Fills `profile` with the optical depth along the span, as a function of distance.
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile);
 
-    /// Integrals over the ball of min(sigma_t / `ceiling`, 1), for the normalisation of kernels: in a uniform
-    /// medium the volume inside `bounds`, whatever the ceiling. `turn` in \[0, 1) turns the quadrature
-    /// points of grids.
-    fn ball_integral(&self, bounds: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral;
+    /// Moments over the ball of min(sigma_t / `ceiling`, 1) (1 - `falloff` (d / r)^2), for the normalisation of kernels: in
+    /// a uniform medium of what is inside `bounds`, whatever the ceiling. `turn` in \[0, 1) turns the
+    /// quadrature points.
+    fn ball_moments(
+        &self,
+        bounds: &Bounds,
+        ball: Ball,
+        ceiling: f64,
+        turn: f64,
+        falloff: f64,
+    ) -> BallMoments;
 }
 
 /// A quantile of the first flight, and how many times likelier than by nature it should collide.

@@ -2,15 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use super::{
-    DensityGrid,
-    ball::{BallPoints, POINT_COUNT},
-    block_walk::LocalRay,
-};
+use super::{DensityGrid, block_walk::LocalRay};
 use crate::{
     math::{Ball, DAffine3, DMat3, DVec3, Random, Ray, Rgb, Span},
     medium::{
-        BallIntegral, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, Parallelepiped,
+        BallMoments, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, Parallelepiped,
         ProfileKnot, RayProfile,
     },
 };
@@ -25,7 +21,6 @@ pub struct GridExtinction {
     density_scale: f64,
     /// `None` where there is no extinction.
     placement: Option<Placement>,
-    ball_points: BallPoints,
 }
 
 /// The map from world to the grid's local coordinates, taken about the grid's centre so that a grid far from
@@ -52,7 +47,7 @@ impl GridExtinction {
             true => Placement::new(&grid, &index_to_world),
             false => None,
         };
-        Self { grid, density_scale, placement, ball_points: BallPoints::new() }
+        Self { grid, density_scale, placement }
     }
 
     /// Where the extinction is: the render bounds in world space, `None` if there is none.
@@ -197,20 +192,22 @@ impl Extinction for GridExtinction {
         });
     }
 
-    fn ball_integral(&self, _: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral {
-        let mut integral = BallIntegral::default();
-        let Some(placement) = &self.placement else { return integral };
-        let (points, turned) = self.ball_points.turned(turn);
+    fn ball_moments(
+        &self,
+        _: &Bounds,
+        ball: Ball,
+        ceiling: f64,
+        turn: f64,
+        falloff: f64,
+    ) -> BallMoments {
+        let Some(placement) = &self.placement else { return BallMoments::even(0.0) };
         let center = placement.local_point(ball.center);
-        let to_local = placement.world_to_local * turned * ball.radius;
+        let to_local = placement.world_to_local * ball.radius;
         let scale = self.density_scale / ceiling;
-        for &point in points {
-            let density = self.grid.local_density((center + to_local * point).to_array());
-            let share = (scale * density).min(1.0);
-            integral.mass += share;
-            integral.second_moment += share * point.length_squared();
-        }
-        integral.scaled(ball.volume() / POINT_COUNT as f64)
+        BallMoments::by_points(ball, turn, |place| {
+            let density = self.grid.local_density((center + to_local * place).to_array());
+            (scale * density).min(1.0) * (1.0 - falloff * place.length_squared())
+        })
     }
 }
 

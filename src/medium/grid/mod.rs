@@ -5,7 +5,6 @@
 //! optical depths. [`GridExtinction`] places a grid in the world.
 
 mod active_voxels;
-mod ball;
 mod block_walk;
 mod brick_atlas;
 mod brick_index;

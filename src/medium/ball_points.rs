@@ -1,4 +1,4 @@
-//! Integrals over balls by a fixed set of points.
+//! Integrals over balls by fixed sets of points.
 //!
 //! The points are a rank-1 lattice of the unit cube (Korobov 1959) carried to the ball with equal volumes:
 //! u, v, w become the radius cbrt(u), the height 1 - 2v and the azimuth 2 pi w. With the 48 points used, the
@@ -8,34 +8,27 @@
 //! over all turns is right to 1 %.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use crate::math::{DMat3, DVec3};
 
 /// Points a ball.
-pub(super) const POINT_COUNT: usize = 48;
+pub const POINT_COUNT: usize = 48;
 /// Different sets of points: a turn about one axis alone would leave errors along that axis.
 const TURN_COUNT: usize = 64;
 /// The lattice's steps in radius and azimuth: the best of all for the fields named above.
 const RADIUS_STEP: usize = 17;
 const AZIMUTH_STEP: usize = 27;
 
-/// Sets of points in the unit ball.
-#[derive(Debug)]
-pub(super) struct BallPoints {
-    turns: Vec<[DVec3; POINT_COUNT]>,
-}
+/// Sets of points in the unit ball, the same for every medium.
+static TURNS: LazyLock<Vec<[DVec3; POINT_COUNT]>> =
+    LazyLock::new(|| (0..TURN_COUNT).map(points_of_turn).collect());
 
-impl BallPoints {
-    pub(super) fn new() -> Self {
-        Self { turns: (0..TURN_COUNT).map(points_of_turn).collect() }
-    }
-
-    /// The points for `phase` in \[0, 1): the set it falls in, and the rotation to apply to it.
-    pub(super) fn turned(&self, phase: f64) -> (&[DVec3; POINT_COUNT], DMat3) {
-        let turns = phase.clamp(0.0, 1.0) * TURN_COUNT as f64;
-        let turn = (turns as usize).min(TURN_COUNT - 1);
-        (&self.turns[turn], DMat3::from_rotation_z((turns - turn as f64) * TAU))
-    }
+/// The points for `turn` in \[0, 1): the set it falls in, and the rotation to apply to it.
+pub fn turned_points(turn: f64) -> (&'static [DVec3; POINT_COUNT], DMat3) {
+    let turns = turn.clamp(0.0, 1.0) * TURN_COUNT as f64;
+    let set = (turns as usize).min(TURN_COUNT - 1);
+    (&TURNS[set], DMat3::from_rotation_z((turns - set as f64) * TAU))
 }
 
 /// The lattice shifted by the turn's place in a sequence of even coverage, mapped to the ball.
@@ -61,10 +54,9 @@ mod tests {
 
     /// Means of a field over the ball, one a phase.
     fn means(field: impl Fn(DVec3) -> f64) -> Vec<f64> {
-        let ball = BallPoints::new();
         (0..512)
             .map(|phase| {
-                let (points, turn) = ball.turned(f64::from(phase) / 512.0);
+                let (points, turn) = turned_points(f64::from(phase) / 512.0);
                 points.iter().map(|&point| field(turn * point)).sum::<f64>() / POINT_COUNT as f64
             })
             .collect()
