@@ -27,7 +27,7 @@ struct Ball {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let size = Overrides { resolution: Some([256, 256]), ..Overrides::default() };
+    let size = Overrides { resolution: Some([256, 256]), k: Some(200), ..Overrides::default() };
     let scene = Scene::load_with(Path::new("examples/scenes/fog_spot.toml"), &size)?;
     let lit = LitScene::prepare(&scene, &Unobserved)?;
     println!("{} photons stored", lit.report().stored_count);

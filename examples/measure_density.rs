@@ -17,7 +17,7 @@ use photonvdb::estimate::{Divisor, EstimateOptions, Estimator, Kernel};
 use photonvdb::light::{Light, PointLight};
 use photonvdb::map::{Columns, MapError, PhotonMap};
 use photonvdb::math::square_maps::square_to_sphere;
-use photonvdb::math::{DVec2, DVec3, Rgb, Stream, uniform};
+use photonvdb::math::{DVec2, DVec3, Ray, Rgb, Stream, uniform};
 use photonvdb::medium::{Bounds, Medium, MediumExtinction, Phase, UniformExtinction};
 use photonvdb::trace::{MapFrame, TraceSettings, trace_photons};
 
@@ -69,7 +69,13 @@ fn measure_map(
 ) -> Result<MapMeans, MapError> {
     let extinction = UniformExtinction { sigma_t: SIGMA_T };
     // Emission -> photons -> map: the library's stages, one by one.
-    let emission = Emission::new(lights, &medium.bounds, 1.0 / SIGMA_T, kind, PHOTONS, seed);
+    let opacity = |ray: &Ray| match medium.bounds.intersect(ray) {
+        Some(span) => -(-SIGMA_T * span.length()).exp_m1(),
+        None => 0.0,
+    };
+    let mean_free_path = 1.0 / SIGMA_T;
+    let emission =
+        Emission::new(lights, &medium.bounds, opacity, mean_free_path, kind, PHOTONS, seed);
     let frame = MapFrame::of(medium, None);
     let settings = TraceSettings { max_order: 1, min_stored_order: 0, max_stored: 1 << 24 };
     let traced = trace_photons(&emission, medium, &extinction, frame, settings, |_| {});
