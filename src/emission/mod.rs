@@ -123,7 +123,9 @@ impl<'a> Emission<'a> {
         let light = self.lights.iter().rev().find(|light| light.first <= index)?;
         let mut random = Stream::Photon.random(self.seed, index);
         let sample = light.sampler.sample(index - light.first, &mut random);
-        let [a, b, c, d, flight_quantile] = sample;
+        // The dimensions that lead to the ray come first, then the flight.
+        let [a, b, c, d, _] = sample;
+        let flight_quantile = sample[light.emitter.dimensions()];
         let (place, density) = match &light.guide {
             Some(guide) => guide.warp(DVec2::new(a, b)),
             None => (DVec2::new(a, b), 1.0),
@@ -158,7 +160,7 @@ fn guide_of(emitter: &Emitter, opacity: &impl Fn(&Ray) -> f64, index: u64) -> (O
 }
 
 impl PrimarySampler {
-    /// Coordinates 0..4 lead from the light, the last is the first flight's quantile.
+    /// A point of the unit cube.
     fn sample(&self, index: u64, random: &mut Random) -> [f64; MAX_DIMENSIONS] {
         match self {
             Self::Random => std::array::from_fn(|_| uniform(random)),
@@ -198,6 +200,7 @@ fn share_out(count: u64, weights: &[f64]) -> Vec<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::DVec3;
 
     #[test]
     fn photons_are_shared_by_power_and_none_is_lost() {
@@ -205,5 +208,36 @@ mod tests {
         assert_eq!(share_out(10, &[1e-9, 1.0, 1.0]), [1, 5, 4]);
         assert_eq!(share_out(2, &[1.0, 1.0, 1.0]).iter().sum::<u64>(), 2);
         assert_eq!(share_out(1_000_003, &[0.3, 0.3, 0.4]).iter().sum::<u64>(), 1_000_003);
+    }
+
+    /// The first flights of stratified and Sobol photons fill equal intervals far more evenly than chance would: they are a
+    /// dimension of the strata, for lights of two and of four dimensions.
+    #[test]
+    fn first_flights_are_stratified() {
+        use crate::light::{Environment, PointLight};
+        let bounds = Bounds::Sphere { center: DVec3::ZERO, radius: 1.0 };
+        let lights = [
+            Light::Point(PointLight { position: DVec3::new(0.1, 0.0, 0.0), intensity: Rgb::ONE }),
+            Light::Environment(Environment::Constant(Rgb::ONE)),
+        ];
+        for light in lights {
+            let light = [light];
+            for (kind, least, most) in [
+                (EmissionKind::Random, 0.5, 2.0),
+                (EmissionKind::Stratified, 0.0, 0.1),
+                (EmissionKind::Sobol, 0.0, 0.1),
+            ] {
+                let emission = Emission::new(&light, &bounds, |_| 0.5, 1.0, kind, 4096, 3);
+                let mut counts = [0.0; 64];
+                for index in 0..4096 {
+                    let photon = emission.photon(index).expect("a photon");
+                    counts[(photon.first_flight.u * 64.0) as usize] += 1.0;
+                }
+                // Poisson counts of mean 64 have chi^2 / 64 of 1.
+                let chi =
+                    counts.iter().map(|c: &f64| (c - 64.0).powi(2) / 64.0).sum::<f64>() / 64.0;
+                assert!((least..most).contains(&chi), "{kind:?}: {chi}");
+            }
+        }
     }
 }

@@ -52,6 +52,15 @@ impl Light {
         }
     }
 
+    /// The middle of a light that is near: about it distances along rays are sampled.
+    pub fn center(&self) -> Option<DVec3> {
+        match self {
+            Self::Quad(light) => Some(light.corner + 0.5 * (light.edge_u + light.edge_v)),
+            Self::Sphere(light) => Some(light.center),
+            _ => self.position(),
+        }
+    }
+
     /// The part of a ray that the light can reach; `None` if nothing is.
     pub fn lit_span(&self, ray: &Ray, span: Span) -> Option<Span> {
         match self {

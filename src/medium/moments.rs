@@ -24,6 +24,11 @@ pub struct BallMoments {
 /// and bounds the weights.
 const LEAST_SPREAD: f64 = 0.01;
 
+/// The weight to find before the points count as enough, the most sets of them, and how they are turned.
+const ENOUGH: f64 = 0.25 * POINT_COUNT as f64;
+const MOST_SETS: usize = 8;
+const SET_STEP: f64 = 0.618_033_988_749_895;
+
 impl BallMoments {
     /// Of what lies evenly about the centre.
     pub fn even(mass: f64) -> Self {
@@ -32,15 +37,23 @@ impl BallMoments {
 
     /// By quadrature: `share` is the weight at a point of the unit ball.
     pub fn by_points(ball: Ball, turn: f64, mut share: impl FnMut(DVec3) -> f64) -> Self {
-        let (points, rotation) = turned_points(turn);
         let (mut mass, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
-        for &point in points {
-            let place = rotation * point;
-            let weight = share(place);
-            mass += weight;
-            first += place * weight;
-            let outer = DMat3::from_cols(place * place.x, place * place.y, place * place.z);
-            second += outer * weight;
+        let mut count = 0.0;
+        for repeat in 0..MOST_SETS {
+            let (points, rotation) = turned_points((turn + repeat as f64 * SET_STEP).fract());
+            for &point in points {
+                let place = rotation * point;
+                let weight = share(place);
+                mass += weight;
+                first += place * weight;
+                let outer = DMat3::from_cols(place * place.x, place * place.y, place * place.z);
+                second += outer * weight;
+            }
+            count += POINT_COUNT as f64;
+            // A ball that is nearly empty takes more points to know what little it holds.
+            if mass >= ENOUGH {
+                break;
+            }
         }
         if mass <= 0.0 {
             return Self::even(0.0);
@@ -50,7 +63,7 @@ impl BallMoments {
         let spread =
             second * (1.0 / mass) - about + DMat3::from_diagonal(DVec3::splat(LEAST_SPREAD));
         let tilt = spread.inverse() * middle;
-        let mass = mass / POINT_COUNT as f64 * ball.volume();
+        let mass = mass / count * ball.volume();
         Self { mass, middle, tilt }
     }
 

@@ -105,6 +105,9 @@ impl<E: Extinction> PixelPass<'_, E> {
             pixel.kernel_radius += seen.radius_sum;
             queries += seen.query_count;
         }
+        // Linear weights may read a little below 0 where next to nothing scatters.
+        pixel.single_scatter = pixel.single_scatter.max(Rgb::ZERO);
+        pixel.multiple_scatter = pixel.multiple_scatter.max(Rgb::ZERO);
         if queries > 0 {
             pixel.photon_count /= queries as f64;
             pixel.kernel_radius /= queries as f64;

@@ -1,7 +1,7 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
 
 use crate::estimate::Estimate;
-use crate::math::{DVec3, Random, Ray};
+use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
     ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction,
 };
@@ -27,6 +27,9 @@ pub trait LightReader {
     /// Light that travels back along a ray from up to `max_distance` \[m\] ahead, and the transmittance of that
     /// segment.
     fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance;
+
+    /// Transmittance alone of a segment, as a host's shadow rays ask for it.
+    fn transmittance(&self, ray: &Ray, max_distance: f64) -> Rgb;
 
     /// Fluence at a place \[W/m^2\], of the photons in the map: scattered light, unless the scene asks for
     /// everything from photons.
@@ -76,6 +79,10 @@ impl<'a> LitScene<'a> {
 impl<E: Extinction> LightReader for Reader<'_, E> {
     fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance {
         self.light_along(ray, max_distance, &[], random)
+    }
+
+    fn transmittance(&self, ray: &Ray, max_distance: f64) -> Rgb {
+        self.transmittance_along(ray, max_distance)
     }
 
     fn fluence(&mut self, place: DVec3) -> Estimate {

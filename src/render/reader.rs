@@ -4,6 +4,7 @@ use crate::estimate::Estimator;
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
+use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
 use crate::scene::Scene;
 
@@ -43,6 +44,12 @@ impl<'a, E: Extinction> Reader<'a, E> {
     /// Estimates at places.
     pub fn estimator(&mut self) -> &mut Estimator<'a, E> {
         &mut self.estimator
+    }
+
+    /// Transmittance of a ray up to `max_distance` \[m\].
+    pub fn transmittance_along(&self, ray: &Ray, max_distance: f64) -> Rgb {
+        let (origin, direction) = (ray.origin, ray.direction);
+        transmittance_to(&self.scene.medium, self.extinction, origin, direction, max_distance)
     }
 
     /// Light that travels back along a ray from up to `max_distance` \[m\] ahead. `skipped` names lights whose

@@ -1,7 +1,7 @@
 //! Single scattering: light that scattered once on its way to the camera, computed without photons.
 //!
 //! Along a ray, L = integral of T(t) sigma_s(t) p(cos) E(t) T_light(t) dt per light, with E the light's irradiance. Distances come
-//! from the ray's transmittance and, for lights at a position, half of them from equi-angular sampling, combined
+//! from the ray's transmittance and, for lights that are near, half of them from equi-angular sampling, combined
 //! by the balance heuristic (Veach and Guibas 1995): the inverse-square peak is sampled away, and optically thick
 //! media are not left to it.
 
@@ -32,9 +32,9 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let Some(by_transmittance) = ByTransmittance::new(self.profile, span) else {
             return Rgb::ZERO;
         };
-        match (light, light.position()) {
-            (_, Some(position)) => {
-                let equi_angular = EquiAngular::new(self.ray, span, position);
+        match (light, light.center()) {
+            (_, Some(center)) => {
+                let equi_angular = EquiAngular::new(self.ray, span, center);
                 self.by_both(light, &equi_angular, &by_transmittance, samples, random)
             }
             (Light::Environment(environment), _) => {

@@ -49,7 +49,7 @@ pub enum MediumKind {
 }
 
 /// A photon and its place in the tree \[bytes\].
-const PHOTON_BYTES: u64 = 64;
+const PHOTON_BYTES: u64 = 110;
 
 impl Plan {
     /// The plan of a scene.
