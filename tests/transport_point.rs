@@ -44,7 +44,9 @@ fn collisions_within_a_radius_of_an_infinite_medium() {
         });
         for (count, radius) in counts.iter().zip(["0.1", "0.5", "1", "2", "5", "20"]) {
             let exact = number(&enclosed[albedo], radius);
-            count.assert_is(exact, &format!("albedo {albedo}, {kind:?}, within {radius}"));
+            // Beyond 20 mean free paths lies less than one photon of all runs.
+            let beyond = 1e-8;
+            count.assert_within(exact, beyond, &format!("albedo {albedo}, {kind:?}, within {radius}"));
         }
     }
 }
@@ -58,7 +60,7 @@ fn fluence_by_radius_of_an_anisotropic_infinite_medium() {
         let g = number(row, "g");
         let medium = grey_fog(Bounds::Infinite, 1.0, 0.9, g);
         let mut scene = scene(medium, one_watt(DVec3::ZERO), 4000);
-        let radii = [0.5, 1.0, 2.0, 5.0];
+        let radii: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
         let fluences = over_seeds(&mut scene, |scene| {
             let traced = trace(scene);
             radii.map(|radius| {

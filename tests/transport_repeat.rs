@@ -30,6 +30,8 @@ fn lit(medium: Medium, kind: EmissionKind, count: u64) -> Scene {
     let mut scene = scene(medium, one_watt(DVec3::new(0.2, 0.1, -0.3)), count);
     scene.lights.push(white_sky());
     scene.photons.emission = kind;
+    scene.render.samples_per_pixel = 1;
+    scene.render.march_samples = 4;
     scene
 }
 

@@ -190,7 +190,10 @@ impl Runs {
 
 /// Mean over rays of what is seen along them in the scene.
 pub fn mean_seen(scene: &Scene, rays: &[Ray], random: &mut Random) -> SeenLight {
-    let lit = LitScene::prepare(scene, &Unobserved).unwrap();
+    seen_in(&LitScene::prepare(scene, &Unobserved).unwrap(), rays, random)
+}
+
+pub fn seen_in(lit: &LitScene, rays: &[Ray], random: &mut Random) -> SeenLight {
     let mut reader = lit.reader();
     let mut seen = SeenLight::default();
     for ray in rays {
