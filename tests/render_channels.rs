@@ -75,7 +75,8 @@ fn a_uniform_grid_or_the_closed_form() {
         let closed_form = rendered(fog(CUBE, Rgb::splat(1.5), ALBEDO, g));
         for (index, (a, b)) in grid.iter().zip(closed_form).enumerate() {
             println!("  of {:.4}", b.mean);
-            a.minus(b).assert_is(0.0, &format!("g {g}, quarter {}, channel {}", index / 3, index % 3));
+            a.minus(b)
+                .assert_is(0.0, &format!("g {g}, quarter {}, channel {}", index / 3, index % 3));
         }
     }
 }

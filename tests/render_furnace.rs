@@ -1,20 +1,25 @@
 //! The white furnace: in a medium that absorbs nothing, under radiance 1 from all sides, every ray sees radiance 1.
 //!
-//! Direct light, single scattering and the photon map share the work; here is what the map must supply, as a share
-//! of all scattered light, so that unscattered light does not hide an error.
+//! With everything from photons, the fluence that the map holds is the same everywhere, and the estimate has no bias:
+//! not at a boundary, nor where a density falls to 0. With single scattering computed apart, the map holds a
+//! fluence that falls towards the boundary, where kernels reach inwards only: it reads too much there, in
+//! proportion to the kernel's radius.
 
 mod grid_support;
 mod transport_support;
 
 use grid_support::cloud;
-use photonvdb::math::{DAffine3, DVec3, Ray, Stream, uniform};
+use photonvdb::math::{DAffine3, DVec3, Random, Ray, Stream, uniform};
 use photonvdb::medium::Medium;
 use photonvdb::render::{RenderOptions, Unobserved, render};
 use photonvdb::scene::Scene;
 use transport_support::*;
 
-/// A sphere of rays about a random place of the medium's inner half.
-fn rays_through(medium: &Medium, seed: u64) -> (Vec<Ray>, photonvdb::math::Random) {
+/// What 10 000 photons may read too much, of all scattered light.
+const BOUNDARY_BIAS: f64 = 0.05;
+
+/// Rays that pass the middle of the medium.
+fn rays_through(medium: &Medium, seed: u64) -> (Vec<Ray>, Random) {
     let middle = medium.bounds.enclosing_ball().unwrap();
     let mut random = Stream::Experiment.random(seed, 1);
     let rays = (0..150)
@@ -26,65 +31,78 @@ fn rays_through(medium: &Medium, seed: u64) -> (Vec<Ray>, photonvdb::math::Rando
     (rays, random)
 }
 
-/// Scattered light along rays, over what should scatter there; and all light.
-fn along_rays(scene: &mut Scene) -> [Runs; 3] {
-    over_seeds(scene, |scene| {
+/// Scattered light along rays, over what should scatter there: unscattered light would hide an error.
+fn scattered_along_rays(scene: &mut Scene) -> Runs {
+    let [scattered] = over_seeds(scene, |scene| {
         let (rays, mut random) = rays_through(&scene.medium, scene.photons.seed);
         let seen = mean_seen(scene, &rays, &mut random);
         let scattered = seen.single + seen.multiple;
-        let exact = 1.0 - seen.emission.x;
-        [scattered.x / exact, seen.total().x, seen.multiple.x / exact]
-    })
+        [scattered.x / (1.0 - seen.emission.x)]
+    });
+    scattered
 }
 
-fn smoke(g: f64) -> Medium {
+fn box_of_fog(g: f64) -> Medium {
+    grey_fog(CUBE, 2.0, 1.0, g)
+}
+
+fn ball_of_fog(g: f64) -> Medium {
+    grey_fog(ball(1.0), 2.0, 1.0, g)
+}
+
+fn smooth_cloud(g: f64) -> Medium {
     let place = DAffine3::from_scale(DVec3::splat(0.1));
     grid_medium(cloud(10).extinction(place, 6.0), DVec3::ONE, g)
 }
 
-fn check(name: &str, mut scene: Scene, bias: f64) {
-    let [scattered, total, multiple] = along_rays(&mut scene);
-    println!("{name}: total {:.5} ± {:.5}, map's share {:.2}", total.mean, total.error, multiple.mean);
-    scattered.assert_within(1.0, bias, name);
+/// Sparse smoke with wisps of all densities.
+fn smoke(g: f64) -> Medium {
+    let medium = Scene::load(&tests().join("scenes/smoke_sun.toml")).unwrap().medium;
+    let phase = photonvdb::medium::Phase::HenyeyGreenstein { g };
+    Medium { albedo: DVec3::ONE, phase, ..medium }
 }
 
+const MEDIA: [(&str, fn(f64) -> Medium); 4] =
+    [("box", box_of_fog), ("ball", ball_of_fog), ("cloud", smooth_cloud), ("smoke", smoke)];
+
 #[test]
-fn homogeneous_media() {
-    for g in [-0.5, 0.0, 0.85] {
-        for (name, bounds) in [("box", CUBE), ("ball", ball(1.0))] {
-            let scene = scene(grey_fog(bounds, 2.0, 1.0, g), white_sky(), 10_000);
-            check(&format!("{name}, g {g}"), scene, 0.0);
+fn rays_of_photons_alone_see_exactly_one() {
+    for (name, medium) in MEDIA {
+        for g in [-0.5, 0.0, 0.85] {
+            let mut scene = scene(medium(g), white_sky(), 10_000);
+            scene.render.photons_only = true;
+            // The smaller balls follow the density, the larger reach over the boundary.
+            scene.estimate.k = if g == 0.0 { 12 } else { 100 };
+            let what = format!("{name}, g {g}, photons only");
+            scattered_along_rays(&mut scene).assert_is(1.0, &what);
         }
     }
 }
 
 #[test]
-fn a_grid() {
-    for g in [-0.5, 0.0, 0.85] {
-        check(&format!("cloud, g {g}"), scene(smoke(g), white_sky(), 10_000), 0.0);
+fn rays_of_both_see_one_but_for_the_boundary() {
+    for (name, medium) in MEDIA {
+        for g in [-0.5, 0.85] {
+            let mut scene = scene(medium(g), white_sky(), 10_000);
+            let what = format!("{name}, g {g}");
+            scattered_along_rays(&mut scene).assert_within(1.0, BOUNDARY_BIAS, &what);
+        }
     }
 }
 
 #[test]
-fn a_smoke_of_a_file() {
-    let mut scene = Scene::load(&tests().join("scenes/smoke_sun.toml")).unwrap();
-    scene.medium.albedo = DVec3::ONE;
-    scene.lights = vec![white_sky()];
-    scene.photons.count = 10_000;
-    check("smoke", scene, 0.0);
-}
-
-/// By pixels.
-#[test]
-fn images() {
-    for (name, medium) in [("box", grey_fog(CUBE, 2.0, 1.0, 0.3)), ("cloud", smoke(0.3))] {
+fn pixels_see_one() {
+    for (name, medium) in [("box", box_of_fog(0.3)), ("cloud", smooth_cloud(0.3))] {
         let mut scene = scene(medium, white_sky(), 10_000);
-        let [mean] = over_seeds(&mut scene, |scene| {
-            let film = render(scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film;
-            let count = film.pixels.len() as f64;
-            let radiance: f64 = film.pixels.iter().map(|pixel| pixel.radiance().x).sum();
-            [radiance / count]
-        });
-        mean.assert_is(1.0, &format!("image of the {name}"));
+        scene.render.samples_per_pixel = 1;
+        for (photons_only, bias) in [(true, 0.0), (false, BOUNDARY_BIAS)] {
+            scene.render.photons_only = photons_only;
+            let [mean] = over_seeds(&mut scene, |scene| {
+                let film = render(scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film;
+                let count = film.pixels.len() as f64;
+                [film.pixels.iter().map(|pixel| pixel.radiance().x).sum::<f64>() / count]
+            });
+            mean.assert_within(1.0, bias, &format!("{name}, photons only: {photons_only}"));
+        }
     }
 }

@@ -67,7 +67,8 @@ fn a_point_light_inside_emits_exactly_its_power() {
 /// E1 and E2 at the ends of the range: albedo 0 leaves one collision a photon at most, albedo 1 absorbs nothing.
 #[test]
 fn albedo_zero_and_one_are_exact() {
-    for black in [grey_fog(CUBE, 1.5, 0.0, 0.5), fog(CUBE, COLORS, Rgb::ZERO, 0.0), smoke(Rgb::ZERO, 0.0)]
+    for black in
+        [grey_fog(CUBE, 1.5, 0.0, 0.5), fog(CUBE, COLORS, Rgb::ZERO, 0.0), smoke(Rgb::ZERO, 0.0)]
     {
         let scene = scene(black, one_watt(DVec3::ZERO), 20_000);
         let traced = trace(&scene);
@@ -77,7 +78,8 @@ fn albedo_zero_and_one_are_exact() {
         let absorbed = traced.balance.absorbed.y;
         assert!((stored - absorbed).abs() < 1e-6 * absorbed, "{stored} {absorbed}");
     }
-    for white in [grey_fog(CUBE, 1.5, 1.0, 0.5), fog(CUBE, COLORS, Rgb::ONE, 0.0), smoke(Rgb::ONE, 0.0)]
+    for white in
+        [grey_fog(CUBE, 1.5, 1.0, 0.5), fog(CUBE, COLORS, Rgb::ONE, 0.0), smoke(Rgb::ONE, 0.0)]
     {
         let scene = scene(white, one_watt(DVec3::ZERO), 20_000);
         let balance = balance_of(&scene);
@@ -114,8 +116,12 @@ fn each_channel_of_a_chromatic_medium_goes_its_own_way() {
                 let balance = balance_of(scene);
                 [balance.absorbed.x, balance.escaped.x]
             });
-            figures[channel].minus(absorbed).assert_is(0.0, &format!("absorbed, channel {channel}"));
-            figures[3 + channel].minus(escaped).assert_is(0.0, &format!("escaped, channel {channel}"));
+            figures[channel]
+                .minus(absorbed)
+                .assert_is(0.0, &format!("absorbed, channel {channel}"));
+            figures[3 + channel]
+                .minus(escaped)
+                .assert_is(0.0, &format!("escaped, channel {channel}"));
         }
     }
 }
@@ -128,11 +134,8 @@ fn absorption_is_a_share_of_collisions() {
     let mut scene = scene(fog(CUBE, Rgb::splat(1.5), albedo, 0.5), light, 4000);
     let differences = over_seeds(&mut scene, |scene| {
         let traced = trace(scene);
-        let collided: Rgb = traced
-            .photons
-            .iter()
-            .map(|photon| Rgb::from_array(photon.power.map(f64::from)))
-            .sum();
+        let collided: Rgb =
+            traced.photons.iter().map(|photon| Rgb::from_array(photon.power.map(f64::from))).sum();
         (traced.balance.absorbed - (Rgb::ONE - albedo) * collided).to_array()
     });
     for difference in differences {

@@ -29,16 +29,19 @@ fn mean_collisions(medium: Medium, kind: EmissionKind) -> (Runs, f64) {
 #[test]
 fn mean_chord_of_boxes_and_balls() {
     let slab = Bounds::Box { min: DVec3::ZERO, max: DVec3::new(1.0, 2.0, 3.0) };
-    for (bounds, chord, area) in
-        [(CUBE, 4.0 / 3.0, 24.0), (slab, 12.0 / 11.0, 22.0), (ball(0.7), 4.0 * 0.7 / 3.0, 4.0 * PI * 0.49)]
-    {
+    for (bounds, chord, area) in [
+        (CUBE, 4.0 / 3.0, 24.0),
+        (slab, 12.0 / 11.0, 22.0),
+        (ball(0.7), 4.0 * 0.7 / 3.0, 4.0 * PI * 0.49),
+    ] {
         for (sigma_t, g, kind) in [
             (0.3, 0.0, EmissionKind::Stratified),
             (3.0, 0.85, EmissionKind::Sobol),
             (3.0, -0.5, EmissionKind::Random),
         ] {
             let (collisions, emitted) = mean_collisions(grey_fog(bounds, sigma_t, 1.0, g), kind);
-            collisions.assert_is(chord * sigma_t, &format!("{bounds:?}, {sigma_t}, g {g}, {kind:?}"));
+            collisions
+                .assert_is(chord * sigma_t, &format!("{bounds:?}, {sigma_t}, g {g}, {kind:?}"));
             assert!((emitted / (PI * area) - 1.0).abs() < 1e-12, "{emitted}");
         }
     }
@@ -49,8 +52,10 @@ fn mean_chord_of_boxes_and_balls() {
 fn mean_chord_of_grids() {
     let turn = DMat3::from_rotation_y(0.4) * DMat3::from_rotation_x(1.1);
     let sizes = DVec3::new(0.1, 0.15, 0.05);
-    let place = DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(sizes), DVec3::splat(9.0));
-    let steep = Voxels::of_field([-3, 0, 0], [9, 5, 7], |[x, y, z]| f64::from((x * 7 + y * 3 + z * 5) & 3));
+    let place =
+        DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(sizes), DVec3::splat(9.0));
+    let steep =
+        Voxels::of_field([-3, 0, 0], [9, 5, 7], |[x, y, z]| f64::from((x * 7 + y * 3 + z * 5) & 3));
     for (voxels, scale) in [(cloud(10), 6.0), (steep, 1.0)] {
         let sum: f64 = voxels.leaves.values().flat_map(|leaf| &leaf.1).map(|v| f64::from(*v)).sum();
         let extinction = voxels.extinction(place, scale);

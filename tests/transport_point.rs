@@ -15,7 +15,10 @@ use photonvdb::trace::TracedPhotons;
 use transport_support::*;
 
 /// Squared distance from the light of every collision, where sigma_t = 1.
-fn distances_squared<'a>(scene: &Scene, traced: &'a TracedPhotons) -> impl Iterator<Item = f64> + 'a {
+fn distances_squared<'a>(
+    scene: &Scene,
+    traced: &'a TracedPhotons,
+) -> impl Iterator<Item = f64> + 'a {
     let frame = frame(scene);
     let light = scene.lights[0].position().unwrap();
     traced.photons.iter().map(move |p| frame.to_world(p.position).distance_squared(light))
@@ -46,7 +49,11 @@ fn collisions_within_a_radius_of_an_infinite_medium() {
             let exact = number(&enclosed[albedo], radius);
             // Beyond 20 mean free paths lies less than one photon of all runs.
             let beyond = 1e-8;
-            count.assert_within(exact, beyond, &format!("albedo {albedo}, {kind:?}, within {radius}"));
+            count.assert_within(
+                exact,
+                beyond,
+                &format!("albedo {albedo}, {kind:?}, within {radius}"),
+            );
         }
     }
 }
@@ -126,7 +133,8 @@ fn collisions_and_escape_of_a_ball() {
         [EmissionKind::Stratified, EmissionKind::Random, EmissionKind::Sobol].into_iter().cycle(),
     ) {
         let (albedo, radius) = (number(row, "a"), number(row, "R"));
-        let mut scene = scene(grey_fog(ball(radius), 1.0, albedo, 0.0), one_watt(DVec3::ZERO), 4000);
+        let mut scene =
+            scene(grey_fog(ball(radius), 1.0, albedo, 0.0), one_watt(DVec3::ZERO), 4000);
         scene.photons.emission = kind;
         let [collisions, escape] = over_seeds(&mut scene, |scene| {
             let traced = trace(scene);

@@ -109,7 +109,10 @@ fn other_seeds_and_passes_differ() {
             let second = everything(&scene);
             assert!(first.0 != second.0 && first.3 != second.3, "{kind:?}");
             let one = render(&scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap();
-            assert!(film_bits(&one.film) != second.3, "{kind:?}: the second pass repeats the first");
+            assert!(
+                film_bits(&one.film) != second.3,
+                "{kind:?}: the second pass repeats the first"
+            );
         }
     }
 }

@@ -107,11 +107,8 @@ pub fn trace(scene: &Scene) -> TracedPhotons {
         photons.count,
         photons.seed,
     );
-    let settings = TraceSettings {
-        max_order: photons.max_order,
-        min_stored_order: 0,
-        max_stored: usize::MAX,
-    };
+    let settings =
+        TraceSettings { max_order: photons.max_order, min_stored_order: 0, max_stored: usize::MAX };
     let frame = frame(scene);
     let traced = match &medium.extinction {
         MediumExtinction::Uniform(extinction) => {
