@@ -24,7 +24,7 @@ fn largest_error(impact: f64) -> f64 {
 fn glowing_balls() {
     for row in truth("glow.json").as_array().unwrap() {
         let (albedo, radius) = (number(row, "albedo"), number(row, "R"));
-        if ![(0.5, 1.0), (0.9, 2.0), (1.0, 2.0)].contains(&(albedo, radius)) {
+        if ![(0.5, 1.0), (0.9, 2.0)].contains(&(albedo, radius)) {
             continue;
         }
         let medium = grey_fog(ball(radius), 1.0, albedo, 0.0);

@@ -89,7 +89,7 @@ fn power_density_inside_and_on_the_boundary() {
     ];
     for (bounds, places) in [(CUBE, in_box), (ball(1.0), in_ball)] {
         for (sigma_t, g) in [(0.5, 0.0), (4.0, 0.6)] {
-            let mut scene = scene(grey_fog(bounds, sigma_t, 1.0, g), white_sky(), 20_000);
+            let mut scene = scene(grey_fog(bounds, sigma_t, 1.0, g), white_sky(), 10_000);
             scene.photons.emission = EmissionKind::Random;
             scene.render.photons_only = true;
             scene.estimate.k = 50;
