@@ -170,3 +170,29 @@ fn help_teaches_by_example() {
     );
     assert_eq!(work.run("--version").stdout, format!("photonvdb {}\n", env!("CARGO_PKG_VERSION")));
 }
+
+/// Asks for far more passes than there is time for, and interrupts as soon as the plan is told.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_after_the_pass_in_flight() {
+    use std::io::{BufRead, BufReader, Read};
+    use std::process::{Command, Stdio};
+
+    let work = Workspace::new();
+    let mut render = work.command("render fog.toml -o fog.exr --report fog.json --passes 1e9");
+    let mut render = render.stderr(Stdio::piped()).spawn().unwrap();
+    let mut stderr = BufReader::new(render.stderr.take().unwrap());
+    stderr.read_line(&mut String::new()).unwrap();
+    let interrupt = Command::new("kill").args(["-INT", &render.id().to_string()]).status().unwrap();
+    assert!(interrupt.success());
+    let mut said = String::new();
+    stderr.read_to_string(&mut said).unwrap();
+    assert_eq!(render.wait().unwrap().code(), Some(0), "{said}");
+    assert!(said.contains("ended after pass"), "{said}");
+    assert_eq!(work.names(), ["fog.exr", "fog.json", "fog.toml"]);
+    let report: Value = serde_json::from_slice(&fs::read(work.path("fog.json")).unwrap()).unwrap();
+    let passes = report["passes_done"].as_u64().unwrap();
+    assert!((1..1_000_000_000).contains(&passes));
+    assert_eq!(report["photons"]["emitted"], 2000 * passes);
+    read_rgb(&work.path("fog.exr")).unwrap();
+}

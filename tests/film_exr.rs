@@ -208,3 +208,35 @@ fn damaged_bytes_never_panic() {
         }
     }
 }
+
+/// Regression: the decoder of DWA chunks allocates what their counters say, which ended the process.
+#[test]
+fn huge_counters_of_dwa_chunks_are_refused() {
+    use exr::prelude::*;
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("dwa.exr");
+    let wave = |x: usize| f16::from_f32((x as f32 * 0.3).sin() + 1.0);
+    let channels = SpecificChannels::rgb(|Vec2(x, y)| (wave(x), wave(y), wave(x + y)));
+    let encoding = Encoding {
+        compression: Compression::DWAA(None),
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let image = Image::from_encoded_channels((32, 32), encoding, channels);
+    image.write().to_file(&path).unwrap();
+    let red = read_rgb(&path).unwrap().pixels[5][0];
+    assert!((red - wave(5).to_f32()).abs() < 0.05, "{red}");
+
+    // The only entry of the offset table points right behind itself.
+    let bytes = fs::read(&path).unwrap();
+    let points_behind_itself = |at: &usize| bytes[at - 8..*at] == (*at as u64).to_le_bytes();
+    let chunk = (8..bytes.len()).find(points_behind_itself).unwrap();
+    // The counters follow the line number and the size of the chunk.
+    for counter in [1, 6, 7, 8, 9] {
+        let mut damaged = bytes.clone();
+        let place = chunk + 8 + 8 * counter;
+        damaged[place..place + 8].copy_from_slice(&(1_u64 << 52).to_le_bytes());
+        fs::write(&path, &damaged).unwrap();
+        assert!(matches!(read_rgb(&path), Err(FilmError::Damaged { .. })), "counter {counter}");
+    }
+}

@@ -8,14 +8,14 @@ mod grid_support;
 
 use grid_support::{Voxels, cloud};
 use photonvdb::{
-    math::{DAffine3, DMat3, DVec3, Ray, Rgb, Span, Stream, uniform},
-    medium::{Extinction, Flight, GridExtinction, RayProfile},
+    math::{Ball, DAffine3, DMat3, DVec3, Ray, Rgb, Span, Stream, uniform},
+    medium::{Bounds, Extinction, Flight, GridExtinction, RayProfile},
 };
 
 const RAMP_AXIS: f64 = 1.5;
-const RAMP_OBLIQUE: f64 = 3.068_172_400_785_650_1;
+const RAMP_OBLIQUE: f64 = 3.068_172_400_785_65;
 const TRI_2VOXEL_AXIS: f64 = 2.0;
-const TRI_8_DIAGONAL: f64 = 3.355_848_439_664_699_8;
+const TRI_8_DIAGONAL: f64 = 3.355_848_439_664_7;
 const VDB_2VOXEL_BACKGROUND0_OFFSET: f64 = 0.5;
 
 fn scaled(voxel_size: DVec3) -> DAffine3 {
@@ -375,4 +375,27 @@ fn quantiles_of_the_free_flight_invert_its_distribution() {
     }
     let escape = extinction.invert_flight(&ray, Span::new(0.0, 1.0), Rgb::ONE, 0.5);
     assert_eq!(escape, Flight::Escape { weight: Rgb::ONE });
+}
+
+#[test]
+fn the_extinction_in_a_ball_is_its_mean_times_the_volume() {
+    // sigma_t = 0.5 in half of the index space of voxels of 2, and nothing in the rest.
+    let half = Voxels::of_field([-40, -40, -40], [0, 40, 40], |_| 1.0);
+    let place = scaled(DVec3::splat(2.0));
+    let extinction = half.extinction(place, 0.5);
+    let ball = |x: f64| Ball { center: DVec3::new(x, 3.0, -5.0), radius: 10.0 };
+    let mean = |ball: Ball, ceiling: f64| {
+        let sum: f64 = (0..256)
+            .map(|n| {
+                let phase = f64::from(n) / 256.0;
+                ceiling * extinction.ball_integral(&Bounds::Infinite, ball, ceiling, phase).mass
+            })
+            .sum();
+        sum / 256.0 / ball.volume()
+    };
+    assert!((mean(ball(-20.0), 1.0) - 0.5).abs() < 1e-12);
+    assert!((mean(ball(-20.0), 0.2) - 0.2).abs() < 1e-12);
+    assert_eq!(mean(ball(20.0), 1.0), 0.0);
+    // The density falls from 1 to 0 between x = 0 and 2: half of it is beyond x = 1.
+    assert!((mean(ball(1.0), 1.0) - 0.25).abs() < 0.005);
 }

@@ -92,7 +92,7 @@ fn every_value_matters() {
 fn an_override_counts_as_the_value_it_replaces() {
     let folder = tempfile::tempdir().unwrap();
     let edited = SCENE.replace("count = 1000", "count = 2000\nemission = \"sobol\"\nseed = 9")
-        + "[estimate]\nk = 7\ndivisor = \"k-1/2\"\n";
+        + "[estimate]\nk = 7\ndivisor = \"k-1/2\"\n[render]\nphotons_only = true\n";
     let edited = edited.replace("look_at", "resolution = [32, 18]\nlook_at");
     let expected = load(folder.path(), "b.toml", &edited);
     let path = folder.path().join("a.toml");
@@ -104,6 +104,7 @@ fn an_override_counts_as_the_value_it_replaces() {
         k: Some(7),
         divisor: Some("k-1/2".into()),
         resolution: Some([32, 18]),
+        photons_only: Some(true),
     };
     let scene = Scene::load_with(&path, &overrides).unwrap();
     assert_eq!(scene.hash, expected.hash);

@@ -20,7 +20,7 @@ Examples:
   photonvdb inspect fog.toml
       What a scene needs, without rendering it.
 
-Exit codes: 0 done; 1 a check asked for did not hold; 2 bad input or usage.";
+Exit codes: 0 done, 2 bad input or usage.";
 
 const RENDER_EXAMPLES: &str = "\
 Examples:
@@ -158,6 +158,7 @@ impl RenderArguments {
             k: self.k,
             divisor: self.divisor.clone(),
             resolution: self.resolution,
+            photons_only: self.photons_only.then_some(true),
         }
     }
 

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use photonvdb::film::FilmError;
+use photonvdb::medium::vdb::VdbError;
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
 use thiserror::Error;
@@ -15,6 +16,8 @@ pub enum CliError {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Film(#[from] FilmError),
+    #[error(transparent)]
+    Vdb(#[from] VdbError),
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error("cannot read {path}: {source}", path = path.display())]

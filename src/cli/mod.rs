@@ -20,6 +20,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde::Serialize;
 
 use args::{Arguments, Command};
 use error::CliError;
@@ -42,7 +43,14 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Writes machine-readable output. A reader that has seen enough and closed the pipe is no error.
+/// Writes a value to stdout as indented JSON.
+fn print_json(value: &impl Serialize) -> Result<(), CliError> {
+    let json =
+        serde_json::to_string_pretty(value).map_err(|error| CliError::Stdout(error.into()))?;
+    print_to_stdout(&(json + "\n"))
+}
+
+/// Writes text to stdout. A reader that has seen enough and closed the pipe is no error.
 fn print_to_stdout(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {

@@ -27,23 +27,21 @@ impl Progress {
         // `stderr` draws nothing where it is no terminal.
         let target =
             if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(Some(total), target);
         let pass = self.pass.load(Ordering::Relaxed);
         let prefix =
             if self.passes > 1 { format!("pass {pass}/{} ", self.passes) } else { String::new() };
-        let template = "{prefix}{msg:6} [{wide_bar}] {percent:>3}% {eta:>4}";
-        bar.set_style(
-            ProgressStyle::with_template(template)
-                .unwrap_or_else(|_| ProgressStyle::default_bar())
-                .progress_chars("=> "),
-        );
-        bar.set_prefix(prefix);
-        bar.set_message(match stage {
+        let name = match stage {
             Stage::Trace => "trace",
             Stage::Build => "build",
             Stage::Gather => "gather",
-        });
-        bar
+        };
+        let style =
+            ProgressStyle::with_template("{prefix}{msg:6} [{wide_bar}] {percent:>3}% {eta:>4}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
+        ProgressBar::with_draw_target(Some(total), target)
+            .with_style(style)
+            .with_prefix(prefix)
+            .with_message(name)
     }
 }
 

@@ -13,7 +13,7 @@ use super::args::RenderArguments;
 use super::error::CliError;
 use super::interrupt;
 use super::progress::Progress;
-use super::report::{Comparison, Report, Seconds, is_stdout, write_json};
+use super::report::{Comparison, Report, Seconds, is_stdout, write_report};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
@@ -27,13 +27,14 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let scene = load_scene(arguments)?;
     let reference = load_reference(arguments, &scene)?;
     let plan = Plan::of(&scene);
+    let interrupted = interrupt::catch()?;
     summary.plan(&scene, &plan);
     let load = started.elapsed().as_secs_f64();
 
     let pool = thread_pool(arguments.threads)?;
     let settings =
         Settings::of(&arguments.scene, &scene, arguments.passes, pool.current_num_threads());
-    let progress = Progress::new(arguments.passes, arguments.quiet, interrupt::catch()?);
+    let progress = Progress::new(arguments.passes, arguments.quiet, interrupted);
     let options = RenderOptions { passes: arguments.passes };
     let rendering = pool.install(|| render(&scene, &options, &progress))?;
 
@@ -69,7 +70,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     }
     report.seconds.total = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {
-        write_json(path, &report)?;
+        write_report(path, &report)?;
     }
     summary.times(&report.seconds, &report.photons);
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
@@ -84,9 +85,7 @@ fn check_outputs(arguments: &RenderArguments) -> Result<(), FilmError> {
 }
 
 fn load_scene(arguments: &RenderArguments) -> Result<Scene, CliError> {
-    let mut scene = Scene::load_with(&arguments.scene, &arguments.overrides())?;
-    scene.render.photons_only |= arguments.photons_only;
-    Ok(scene)
+    Ok(Scene::load_with(&arguments.scene, &arguments.overrides())?)
 }
 
 fn load_reference<'a>(

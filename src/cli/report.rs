@@ -1,5 +1,6 @@
 //! The machine-readable report of a render.
 
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use photonvdb::scene::Plan;
 use serde::Serialize;
 
 use super::error::CliError;
-use super::print_to_stdout;
+use super::print_json;
 use super::settings::Settings;
 
 /// What `--report` writes. Figures that are unknown are `null`.
@@ -104,15 +105,16 @@ impl From<&RenderReport> for Power {
     }
 }
 
-/// Writes a value as indented JSON to `path`, or to stdout where `path` is `-`.
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    let json =
-        serde_json::to_string_pretty(value).map_err(|error| CliError::Stdout(error.into()))?;
+/// Writes the report to `path`, or to stdout where `path` is `-`.
+pub fn write_report(path: &Path, report: &Report) -> Result<(), CliError> {
     if is_stdout(path) {
-        return print_to_stdout(&(json + "\n"));
+        return print_json(report);
     }
-    write_beside(path, |file| writeln!(file, "{json}"))?;
-    Ok(())
+    let write = |file: &mut File| {
+        serde_json::to_writer_pretty(&mut *file, report)?;
+        writeln!(file)
+    };
+    Ok(write_beside(path, write)?)
 }
 
 /// Whether a path stands for stdout.

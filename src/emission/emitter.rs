@@ -152,6 +152,11 @@ impl<'a> Emitter<'a> {
         self.power
     }
 
+    /// Primary dimensions that lead to a ray: 2 or 4.
+    pub fn dimensions(&self) -> usize {
+        self.extents.len()
+    }
+
     /// Sizes in the medium of the primary dimensions, that of the first flight last \[m\].
     pub fn extents(&self, mean_free_path: f64) -> Vec<f64> {
         // A quantile interval dw of the flight is exp(t / mfp) mfp dw long; taken at the typical depth.
@@ -184,20 +189,20 @@ impl<'a> Emitter<'a> {
             }
             Source::Parallel { direction, irradiance, outline } => {
                 let place = outline.sample_place(first)?;
-                (self.from_afar(place.position, *direction), *irradiance * place.area)
+                (self.ray_through(place.position, *direction), *irradiance * place.area)
             }
             Source::Surround { radiance, surface } => {
                 let (place, normal) = surface.sample_place(first)?;
                 let inward = disc_to_cosine_hemisphere(square_to_disc(second));
                 let direction = Frame::about(-normal).to_world(inward);
-                (self.from_afar(place, direction), *radiance * (PI * surface.area()))
+                (self.ray_through(place, direction), *radiance * (PI * surface.area()))
             }
             Source::Image { environment, bounds } => {
                 let sample = environment.sample_direction(second);
                 let outline = OutlineAim::new(-sample.direction, bounds)?;
                 let place = outline.sample_place(first)?;
                 let power = environment.radiance(sample.direction) * (place.area / sample.pdf);
-                (self.from_afar(place.position, -sample.direction), power)
+                (self.ray_through(place.position, -sample.direction), power)
             }
             Source::Quad { light, bounds } => {
                 let place = light.corner + light.edge_u * u[0] + light.edge_v * u[1];
@@ -223,7 +228,7 @@ impl<'a> Emitter<'a> {
     }
 
     /// A ray through `place` that starts outside the medium.
-    fn from_afar(&self, place: DVec3, direction: DVec3) -> Ray {
+    fn ray_through(&self, place: DVec3, direction: DVec3) -> Ray {
         let back = 2.0 * self.extent.radius + (place - self.extent.center).length();
         Ray::new(place - direction * back, direction)
     }

@@ -2,21 +2,26 @@
 //!
 //! Photon i of n belongs to a light in proportion to the power that each light sends into the bounds. Its
 //! *primary sample* (place, direction, quantile of the first free flight) is drawn independently, one a
-//! stratum, or from an Owen-scrambled Sobol sequence; everything depends on (seed, i) alone.
+//! stratum, or from an Owen-scrambled Sobol sequence; everything depends on (seed, i) alone. A [`Guide`] sends
+//! photons where they collide, and the first collision is made likelier than it is, at the price of
+//! the photon's power: with opacity o = 1 - T on its way it collides with probability p = min(1, o / mean o) and
+//! the power share o / p.
 
 pub mod aim;
 mod cone_table;
 mod emitter;
+mod guide;
 mod sobol;
 mod strata;
 
 pub use emitter::Emitter;
+pub use guide::Guide;
 pub use sobol::Sobol;
 pub use strata::{Interval, MAX_DIMENSIONS, Strata};
 
 use crate::light::Light;
-use crate::math::{Random, Ray, Rgb, Stream, uniform};
-use crate::medium::Bounds;
+use crate::math::{DVec2, Random, Ray, Rgb, Stream, uniform};
+use crate::medium::{BoostedQuantile, Bounds};
 
 /// How photons are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,8 +41,8 @@ pub struct EmittedPhoton {
     pub ray: Ray,
     /// \[W\], already divided by the number of photons.
     pub power: Rgb,
-    /// Quantile of the first free flight in \[0, 1); `None` to draw it like all others.
-    pub flight_quantile: Option<f64>,
+    /// Quantile of the first free flight, and how much likelier its collision is made.
+    pub first_flight: BoostedQuantile,
     /// The stream of the photon's further path.
     pub random: Random,
 }
@@ -57,6 +62,8 @@ struct LightShare<'a> {
     first: u64,
     count: u64,
     sampler: PrimarySampler,
+    guide: Option<Guide>,
+    collision_boost: f64,
 }
 
 /// Where primary samples come from.
@@ -68,11 +75,12 @@ enum PrimarySampler {
 }
 
 impl<'a> Emission<'a> {
-    /// Prepares `count` photons from the lights into the bounds. `mean_free_path` \[m\] is a typical one: it shapes
-    /// the strata, nothing else.
+    /// Prepares `count` photons from the lights into the bounds. `opacity` is that of a ray through the medium;
+    /// it and `mean_free_path` \[m\], a typical one, shape where photons go, nothing else.
     pub fn new(
         lights: &'a [Light],
         bounds: &'a Bounds,
+        opacity: impl Fn(&Ray) -> f64,
         mean_free_path: f64,
         kind: EmissionKind,
         count: u64,
@@ -85,24 +93,22 @@ impl<'a> Emission<'a> {
             .collect();
         let powers: Vec<f64> = emitters.iter().map(Emitter::power_estimate).collect();
         let mut first = 0;
-        let lights: Vec<LightShare> = emitters
-            .into_iter()
-            .zip(share_out(count, &powers))
-            .enumerate()
-            .map(|(index, (emitter, count))| {
-                let sampler = match kind {
-                    EmissionKind::Random => PrimarySampler::Random,
-                    EmissionKind::Stratified => {
-                        let extents = emitter.extents(mean_free_path);
-                        PrimarySampler::Stratified(Strata::new(count, &extents))
-                    }
-                    EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
-                };
-                let share = LightShare { emitter, first, count, sampler };
-                first += count;
-                share
-            })
-            .collect();
+        let mut lights = Vec::new();
+        for (index, (emitter, count)) in
+            emitters.into_iter().zip(share_out(count, &powers)).enumerate()
+        {
+            let sampler = match kind {
+                EmissionKind::Random => PrimarySampler::Random,
+                EmissionKind::Stratified => {
+                    let extents = emitter.extents(mean_free_path);
+                    PrimarySampler::Stratified(Strata::new(count, &extents))
+                }
+                EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
+            };
+            let (guide, collision_boost) = guide_of(&emitter, &opacity, index as u64);
+            lights.push(LightShare { emitter, first, count, sampler, guide, collision_boost });
+            first += count;
+        }
         Self { seed, count: first, lights }
     }
 
@@ -117,11 +123,38 @@ impl<'a> Emission<'a> {
         let light = self.lights.iter().rev().find(|light| light.first <= index)?;
         let mut random = Stream::Photon.random(self.seed, index);
         let sample = light.sampler.sample(index - light.first, &mut random);
-        let [a, b, c, d, flight] = sample;
-        let (ray, power) = light.emitter.sample_ray([a, b, c, d])?;
-        let flight_quantile = (!matches!(light.sampler, PrimarySampler::Random)).then_some(flight);
-        Some(EmittedPhoton { ray, power: power / light.count as f64, flight_quantile, random })
+        let [a, b, c, d, flight_quantile] = sample;
+        let (place, density) = match &light.guide {
+            Some(guide) => guide.warp(DVec2::new(a, b)),
+            None => (DVec2::new(a, b), 1.0),
+        };
+        let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d])?;
+        let power = power / (light.count as f64 * density);
+        let boost = (light.collision_boost / density).max(1.0);
+        let first_flight = BoostedQuantile { u: flight_quantile, boost };
+        Some(EmittedPhoton { ray, power, first_flight, random })
     }
+}
+
+/// The guide of a light, where its rays have two dimensions, and how likely its first collisions are to be made.
+fn guide_of(emitter: &Emitter, opacity: &impl Fn(&Ray) -> f64, index: u64) -> (Option<Guide>, f64) {
+    let mut random = Stream::Guide.random(0, index);
+    let mut inner = random.clone();
+    if emitter.dimensions() == 2 {
+        let of_place = |p: DVec2| {
+            emitter.sample_ray([p.x, p.y, 0.5, 0.5]).map_or(0.0, |(ray, _)| opacity(&ray))
+        };
+        return match Guide::new(&mut random, of_place) {
+            Some((guide, mean)) => (Some(guide), 1.0 / mean),
+            None => (None, 1.0),
+        };
+    }
+    let probes = 1024;
+    let sum: f64 = (0..probes)
+        .filter_map(|_| emitter.sample_ray(std::array::from_fn(|_| uniform(&mut inner))))
+        .map(|(ray, _)| opacity(&ray))
+        .sum();
+    (None, if sum > 0.0 { f64::from(probes) / sum } else { 1.0 })
 }
 
 impl PrimarySampler {

@@ -33,7 +33,7 @@ impl Sobol {
         Self { scrambles: std::array::from_fn(scramble) }
     }
 
-    /// The first 32 bits of coordinate `dimension` (below [`SOBOL_DIMENSIONS`]) of point `index`.
+    /// The first 32 bits of coordinate `dimension` (below five) of point `index`.
     pub fn coordinate(&self, index: u32, dimension: usize) -> u32 {
         let mut bits = 0;
         let mut rest = index;

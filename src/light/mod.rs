@@ -11,7 +11,7 @@ pub use area::{QuadLight, SphereLight};
 pub use environment::{DirectionSample, Environment, EnvironmentImage};
 pub use punctual::{DirectionalLight, PointLight, SpotLight};
 
-use crate::math::{DVec2, DVec3, Ray, Rgb};
+use crate::math::{DVec2, DVec3, Ray, Rgb, Span};
 
 /// A light of the scene.
 #[derive(Debug)]
@@ -49,6 +49,14 @@ impl Light {
             Self::Point(light) => Some(light.position),
             Self::Spot(light) => Some(light.position),
             _ => None,
+        }
+    }
+
+    /// The part of a ray that the light can reach; `None` if nothing is.
+    pub fn lit_span(&self, ray: &Ray, span: Span) -> Option<Span> {
+        match self {
+            Self::Spot(light) => light.lit_span(ray, span),
+            _ => Some(span),
         }
     }
 

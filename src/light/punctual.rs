@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::light::Illumination;
 use crate::math::square_maps::{versine, versine_angle};
-use crate::math::{DVec3, Rgb};
+use crate::math::{DVec3, Ray, Rgb, Span};
 
 /// A point that radiates the same in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,50 @@ impl SpotLight {
             self.intensity * self.falloff(self.angle_to(direction))
         })
         .filter(|illumination| illumination.irradiance != Rgb::ZERO)
+    }
+
+    /// The part of a ray that can be inside the cone; `None` if nothing is. A cone of 90 degrees or more
+    /// is not convex, and answers the whole span.
+    pub fn lit_span(&self, ray: &Ray, span: Span) -> Option<Span> {
+        if self.cone_angle >= 0.5 * PI {
+            return Some(span);
+        }
+        // Points with (axis . w)^2 = cos^2 w^2, w = origin + t direction - position, on the forward nappe.
+        let offset = ray.origin - self.position;
+        let (sin, cos) = self.cone_angle.sin_cos();
+        let (along, along_offset) = (self.axis.dot(ray.direction), self.axis.dot(offset));
+        let across = ray.direction - self.axis * along;
+        let across_offset = offset - self.axis * along_offset;
+        // Inside where f(t) = cos^2 |across|^2 - sin^2 along^2 <= 0: written in sin, it keeps needles' digits.
+        let a = cos * cos * across.length_squared() - sin * sin * along * along;
+        let b = cos * cos * across.dot(across_offset) - sin * sin * along * along_offset;
+        let c =
+            cos * cos * across_offset.length_squared() - sin * sin * along_offset * along_offset;
+        let apex = -along_offset / along;
+        let forward = if along > 0.0 {
+            Span::new(apex, f64::INFINITY)
+        } else if along < 0.0 {
+            Span::new(f64::NEG_INFINITY, apex)
+        } else {
+            Span::new(f64::NEG_INFINITY, f64::INFINITY)
+        };
+        let ahead = span.intersect(forward)?;
+        let discriminant = b * b - a * c;
+        if discriminant <= 0.0 {
+            // No crossing: outside all along, or (a < 0) inside all along the forward nappe.
+            return (a < 0.0).then_some(ahead);
+        }
+        let q = -(b + discriminant.sqrt().copysign(b));
+        let (first, second) = (q / a, c / q);
+        let (low, high) = (first.min(second), first.max(second));
+        let inside = if a > 0.0 {
+            Span::new(low, high)
+        } else if along > 0.0 {
+            Span::new(high, f64::INFINITY)
+        } else {
+            Span::new(f64::NEG_INFINITY, low)
+        };
+        ahead.intersect(inside)
     }
 
     /// Intensity at an angle from the axis, over that on the axis.
@@ -117,6 +161,7 @@ fn inverse_square(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{Stream, uniform};
 
     #[test]
     fn spot_falls_linearly_in_the_angle_and_needles_keep_their_solid_angle() {
@@ -138,5 +183,37 @@ mod tests {
         assert!((spot.effective_solid_angle() / (PI * 1e-12) - 1.0).abs() < 1e-9);
         assert_eq!(spot.illumination(at(2e-6)), None);
         assert!(spot.illumination(at(5e-7)).is_some());
+    }
+
+    /// The lit span against the angle at many points of random rays, inside and outside the cone.
+    #[test]
+    fn the_lit_span_is_where_the_angle_is_within_the_cone() {
+        let mut random = Stream::Experiment.random(9, 0);
+        let mut draw =
+            || DVec3::from_array(std::array::from_fn(|_| 2.0 * uniform(&mut random) - 1.0));
+        let (mut lit, mut rays) = (0, 0);
+        for case in 0..4000 {
+            let spot = SpotLight {
+                position: draw(),
+                axis: draw().normalize(),
+                intensity: Rgb::ONE,
+                cone_angle: [0.02, 0.3, 1.0, 1.5][case % 4],
+                falloff_angle: 0.01,
+            };
+            let ray = Ray::new(draw() * 2.0, draw().normalize());
+            let span = Span::new(0.0, 5.0);
+            let found = spot.lit_span(&ray, span);
+            rays += 1;
+            for step in 0..200 {
+                let distance = 0.0125 + 0.025 * f64::from(step);
+                let angle = spot.angle_to((ray.at(distance) - spot.position).normalize());
+                let within = found.is_some_and(|s| s.start <= distance && distance <= s.end);
+                if (angle - spot.cone_angle).abs() > 1e-9 {
+                    assert_eq!(within, angle < spot.cone_angle, "case {case} at {distance}");
+                }
+                lit += i32::from(within);
+            }
+        }
+        assert!(lit > 10 * rays, "some of it is lit");
     }
 }

@@ -19,6 +19,8 @@ pub enum Stream {
     Scramble = 3,
     /// Experiments of the lab and of tests.
     Experiment = 4,
+    /// Probes of where photons are worth sending.
+    Guide = 5,
 }
 
 impl Stream {

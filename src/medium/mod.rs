@@ -57,6 +57,15 @@ pub trait Extinction: Sync {
     /// Integral of sigma_t over the span, exact up to rounding.
     fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb;
 
+    /// Probability that a photon of the given power collides within the span: 1 - T, for a chromatic medium
+    /// averaged over the channels' shares of the power.
+    fn opacity(&self, ray: &Ray, span: Span, power: Rgb) -> f64 {
+        let depth = self.optical_depth(ray, span);
+        let opacity = Rgb::new(-(-depth.x).exp_m1(), -(-depth.y).exp_m1(), -(-depth.z).exp_m1());
+        let total = power.element_sum();
+        if total > 0.0 { opacity.dot(power) / total } else { opacity.element_sum() / 3.0 }
+    }
+
     /// Draws the next collision of a photon of the given power: analytic in uniform media, delta
     /// tracking with local majorants in grids.
     fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight;
@@ -65,6 +74,21 @@ pub trait Extinction: Sync {
     /// the strata of `u` intact.
     fn invert_flight(&self, ray: &Ray, span: Span, power: Rgb, u: f64) -> Flight;
 
+    /// A flight made to end in a collision more often than by nature. With opacity o and probability
+    /// p = min(1, `boost` o), `boost` >= 1, a `u` below p is a collision at quantile o u / p that carries the share
+    /// o / p of the power; any other escapes. `profile` is memory for grids.
+    fn boosted_flight(
+        &self,
+        ray: &Ray,
+        span: Span,
+        power: Rgb,
+        boosted: BoostedQuantile,
+        _profile: &mut RayProfile,
+    ) -> BoostedFlight {
+        let opacity = self.opacity(ray, span, power);
+        boosted.flight(opacity, |quantile| self.invert_flight(ray, span, power, quantile))
+    }
+
     /// Fills `profile` with the optical depth along the span, as a function of distance.
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile);
 
@@ -72,6 +96,37 @@ pub trait Extinction: Sync {
     /// medium the volume inside `bounds`, whatever the ceiling. `turn` in \[0, 1) turns the quadrature
     /// points of grids.
     fn ball_integral(&self, bounds: &Bounds, ball: Ball, ceiling: f64, turn: f64) -> BallIntegral;
+}
+
+/// A quantile of the first flight, and how many times likelier than by nature it should collide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoostedQuantile {
+    /// In \[0, 1).
+    pub u: f64,
+    /// At least 1.
+    pub boost: f64,
+}
+
+/// A flight that is worth only a share of the photon's power; the rest of it has escaped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoostedFlight {
+    /// Its end.
+    pub flight: Flight,
+    /// In (0, 1\].
+    pub share: f64,
+}
+
+impl BoostedQuantile {
+    /// The flight through a medium of the given opacity, inverted at the quantile it asks for.
+    #[inline]
+    pub fn flight(self, opacity: f64, invert: impl FnOnce(f64) -> Flight) -> BoostedFlight {
+        let probability = (opacity * self.boost).min(1.0);
+        if self.u < probability {
+            let flight = invert(opacity * (self.u / probability));
+            return BoostedFlight { flight, share: opacity / probability };
+        }
+        BoostedFlight { flight: Flight::Escape { weight: Rgb::ONE }, share: 1.0 }
+    }
 }
 
 /// The end of a photon's flight.

@@ -98,7 +98,8 @@ impl RayProfile {
         let Some(knot) = self.knots.get(piece) else { return self.end() };
         let (start, depth_before) = self.start_of(piece);
         let length = knot.distance - start;
-        start + length * quadratic(knot).invert((optical_depth - depth_before) / length)
+        start
+            + length * Cubic::through(knot.sigma_t).invert((optical_depth - depth_before) / length)
     }
 
     /// Optical depth to a distance where there are knots.
@@ -109,7 +110,7 @@ impl RayProfile {
         let length = knot.distance - start;
         let u = ((distance - start) / length).max(0.0);
         // A quadratic through values of a cubic can dip below 0; the depth never falls.
-        let depth = depth_before + length * quadratic(knot).integral_to(u);
+        let depth = depth_before + length * Cubic::through(knot.sigma_t).integral_to(u);
         depth.clamp(depth_before, knot.optical_depth.max(depth_before))
     }
 
@@ -128,10 +129,6 @@ impl RayProfile {
     fn end(&self) -> f64 {
         self.span.map_or(0.0, |span| span.end)
     }
-}
-
-fn quadratic(knot: &ProfileKnot) -> Cubic {
-    Cubic { values: knot.sigma_t, third: 0.0 }
 }
 
 /// sigma_t times distance; 0 times infinity is 0.

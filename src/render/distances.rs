@@ -8,36 +8,41 @@
 use crate::math::{DVec3, Ray, Rgb, Span, exp};
 use crate::medium::RayProfile;
 
-/// Sampling by transmittance along one ray.
+/// Sampling by transmittance over a part of a ray.
 pub struct ByTransmittance<'a> {
     profile: &'a RayProfile,
-    /// 1 - T(end) per channel.
+    /// Optical depth up to the part's start, per channel.
+    depth_before: Rgb,
+    /// 1 - T over the part, per channel.
     opacity: Rgb,
     /// Channels that differ: 1 if the medium is grey, else 3.
     channels: usize,
 }
 
 impl<'a> ByTransmittance<'a> {
-    /// `None` where the span has no extinction.
+    /// Sampling of `span`, a part of the profile's; `None` where it has no extinction.
     pub fn new(profile: &'a RayProfile, span: Span) -> Option<Self> {
-        let depth = profile.optical_depth(span.end);
+        let depth_before = profile.optical_depth(span.start);
+        let depth = profile.optical_depth(span.end) - depth_before;
         let opacity = Rgb::new(-(-depth.x).exp_m1(), -(-depth.y).exp_m1(), -(-depth.z).exp_m1());
         let channels = if depth.x == depth.y && depth.y == depth.z { 1 } else { 3 };
-        (opacity.max_element() > 0.0).then_some(Self { profile, opacity, channels })
+        (opacity.max_element() > 0.0).then_some(Self { profile, depth_before, opacity, channels })
     }
 
     /// The distance at quantile `u`; `pick` in \[0, 1) chooses the channel of a chromatic medium.
     pub fn sample_distance(&self, u: f64, pick: f64) -> f64 {
         let channel = self.pick_channel(pick);
-        let depth = -(-u * self.opacity[channel]).ln_1p();
+        let depth = self.depth_before[channel] - (-u * self.opacity[channel]).ln_1p();
         self.profile.distance_at(depth, channel)
     }
 
-    /// Density of [`Self::sample_distance`] \[1/m\], where transmittance and sigma_t are as given.
+    /// Density of [`Self::sample_distance`] \[1/m\], where sigma_t and the transmittance from the ray's start are as
+    /// given.
     pub fn pdf_distance(&self, transmittance: Rgb, sigma_t: Rgb) -> f64 {
         let channel = |c: usize| {
-            if self.opacity[c] > 0.0 {
-                transmittance[c] * sigma_t[c] / self.opacity[c]
+            if transmittance[c] > 0.0 && self.opacity[c] > 0.0 {
+                let within = transmittance[c] * self.depth_before[c].exp();
+                within * sigma_t[c] / self.opacity[c]
             } else {
                 0.0
             }
@@ -54,7 +59,7 @@ impl<'a> ByTransmittance<'a> {
     /// For `count` samples: T(t) sigma_t(t) / (count pdf(t)) per channel, in the form that is exact for grey media.
     pub fn scattering_weight(&self, distance: f64, sigma_t: Rgb, count: f64) -> Rgb {
         if self.channels == 1 {
-            return self.opacity / count;
+            return exp(-self.depth_before) * self.opacity / count;
         }
         let transmittance = exp(-self.profile.optical_depth(distance));
         transmittance * sigma_t / (count * self.pdf_distance(transmittance, sigma_t))

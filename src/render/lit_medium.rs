@@ -7,7 +7,7 @@ use crate::emission::Emission;
 use crate::estimate::{EstimateOptions, Estimator};
 use crate::map::{Columns, PhotonMap};
 use crate::math::square_maps::square_to_sphere;
-use crate::math::{Ball, DVec2, Ray, mean_channel};
+use crate::math::{Ball, DVec2, Ray, Rgb, mean_channel};
 use crate::medium::{Bounds, Extinction};
 use crate::render::{Observer, Reader, RenderError, RenderReport, Stage};
 use crate::scene::Scene;
@@ -44,6 +44,10 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         let emission = Emission::new(
             &scene.lights,
             &medium.bounds,
+            |ray| {
+                let span = medium.bounds.intersect(ray);
+                span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
+            },
             mean_free_path(extinction, &medium.bounds),
             scene.photons.emission,
             scene.photons.count,

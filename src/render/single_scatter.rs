@@ -28,12 +28,14 @@ pub struct ScatteringRay<'a, E> {
 impl<E: Extinction> ScatteringRay<'_, E> {
     /// Radiance of one light, scattered once, from `samples` distances.
     pub fn single_scatter(&self, light: &Light, samples: usize, random: &mut Random) -> Rgb {
-        let Some(by_transmittance) = ByTransmittance::new(self.profile, self.span) else {
+        let Some(span) = light.lit_span(self.ray, self.span) else { return Rgb::ZERO };
+        let Some(by_transmittance) = ByTransmittance::new(self.profile, span) else {
             return Rgb::ZERO;
         };
         match (light, light.position()) {
             (_, Some(position)) => {
-                self.from_position(light, position, &by_transmittance, samples, random)
+                let equi_angular = EquiAngular::new(self.ray, span, position);
+                self.by_both(light, &equi_angular, &by_transmittance, samples, random)
             }
             (Light::Environment(environment), _) => {
                 self.strata(&by_transmittance, samples, random, |place, random| {
@@ -68,15 +70,14 @@ impl<E: Extinction> ScatteringRay<'_, E> {
     }
 
     /// Distances by both densities.
-    fn from_position(
+    fn by_both(
         &self,
         light: &Light,
-        position: DVec3,
+        equi_angular: &EquiAngular,
         by_transmittance: &ByTransmittance,
         samples: usize,
         random: &mut Random,
     ) -> Rgb {
-        let equi_angular = EquiAngular::new(self.ray, self.span, position);
         let near_light = samples.div_ceil(2);
         let far = samples - near_light;
         let mut sum = Rgb::ZERO;

@@ -17,6 +17,8 @@ pub struct Overrides {
     pub divisor: Option<String>,
     /// `camera.resolution`: width, height \[pixels\].
     pub resolution: Option<[u64; 2]>,
+    /// `render.photons_only`
+    pub photons_only: Option<bool>,
 }
 
 impl Overrides {
@@ -32,6 +34,7 @@ impl Overrides {
         set("photons", "seed", self.seed.map(integer));
         set("estimate", "k", self.k.map(integer));
         set("estimate", "divisor", self.divisor.clone().map(Value::Text));
+        set("render", "photons_only", self.photons_only.map(Value::Boolean));
         let resolution = self.resolution.map(|sides| {
             let item = |side| Node { origin: Origin::Override, value: integer(side) };
             Value::List(sides.map(item).into())

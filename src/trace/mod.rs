@@ -1,6 +1,6 @@
 //! Tracing: from emitted photons to photons stored at collisions.
 //!
-//! A photon flies until it collides (analytically in uniform media, by delta tracking in grids), is stored with
+//! A photon flies until it collides (its first flight exactly inverted, so that strata hold; then analytically in uniform media, by delta tracking in grids), is stored with
 //! its power before the albedo, and scatters. It survives a collision with the probability that its power
 //! keeps, so that photons stay equally strong and the mean is exact. Photons are traced in fixed shares
 //! that are merged in order: the result does not depend on the number of threads.
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::emission::{Emission, EmittedPhoton};
 use crate::math::{Ray, Rgb, max_channel, uniform};
-use crate::medium::{Extinction, Flight, Medium};
+use crate::medium::{Extinction, Flight, Medium, RayProfile};
 
 /// Photons traced by one task: small enough to balance the load, large enough to be worth a task.
 const SHARE: u64 = 8192;
@@ -95,6 +95,7 @@ struct Path<'a, E> {
     settings: TraceSettings,
     photons: Vec<Photon>,
     balance: PowerBalance,
+    profile: RayProfile,
 }
 
 impl<'a, E: Extinction> Path<'a, E> {
@@ -105,18 +106,25 @@ impl<'a, E: Extinction> Path<'a, E> {
         settings: TraceSettings,
     ) -> Self {
         let (photons, balance) = (Vec::new(), PowerBalance::default());
-        Self { medium, extinction, frame, settings, photons, balance }
+        let profile = RayProfile::default();
+        Self { medium, extinction, frame, settings, photons, balance, profile }
     }
 
     /// Follows one photon from its light to its end.
     fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, flight_quantile, mut random } = photon;
+        let EmittedPhoton { mut ray, mut power, first_flight, mut random } = photon;
         self.balance.emitted += power;
         for order in 0.. {
             let Some(span) = self.medium.bounds.intersect(&ray) else { break };
-            let flight = match flight_quantile {
-                Some(u) if order == 0 => self.extinction.invert_flight(&ray, span, power, u),
-                _ => self.extinction.sample_flight(&ray, span, power, &mut random),
+            let flight = if order == 0 {
+                let profile = &mut self.profile;
+                let boosted =
+                    self.extinction.boosted_flight(&ray, span, power, first_flight, profile);
+                self.balance.escaped += power * (1.0 - boosted.share);
+                power *= boosted.share;
+                boosted.flight
+            } else {
+                self.extinction.sample_flight(&ray, span, power, &mut random)
             };
             let distance = match flight {
                 Flight::Escape { weight } => {
@@ -136,7 +144,7 @@ impl<'a, E: Extinction> Path<'a, E> {
             }
             let scattered = power * self.medium.albedo;
             let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
-            if survival < 1.0 && !(uniform(&mut random) < survival) {
+            if survival < 1.0 && uniform(&mut random) >= survival {
                 self.balance.absorbed += power;
                 return;
             }

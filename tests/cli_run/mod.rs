@@ -60,13 +60,16 @@ impl Workspace {
         names
     }
 
+    /// `photonvdb` with arguments separated by spaces.
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_photonvdb"));
+        command.args(arguments.split_whitespace()).current_dir(self.directory.path());
+        command
+    }
+
     /// Runs `photonvdb` with arguments separated by spaces.
     pub fn run(&self, arguments: &str) -> Run {
-        let output = Command::new(env!("CARGO_BIN_EXE_photonvdb"))
-            .args(arguments.split_whitespace())
-            .current_dir(self.directory.path())
-            .output()
-            .unwrap();
+        let output = self.command(arguments).output().unwrap();
         Run {
             code: output.status.code(),
             stdout: String::from_utf8(output.stdout).unwrap(),

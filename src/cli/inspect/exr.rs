@@ -7,14 +7,14 @@ use photonvdb::film::{ExrPart, describe_exr};
 use serde_json::{Map, Value, json};
 
 use crate::cli::error::CliError;
-use crate::cli::print_to_stdout;
+use crate::cli::{print_json, print_to_stdout};
 
 /// Shows the EXR at `path`.
 pub fn inspect(path: &Path, as_json: bool) -> Result<(), CliError> {
     let parts = describe_exr(path)?.parts;
     if as_json {
         let parts: Vec<Value> = parts.iter().map(part_json).collect();
-        return print_to_stdout(&format!("{:#}\n", json!({ "parts": parts })));
+        return print_json(&json!({ "parts": parts }));
     }
     let mut text = String::new();
     for part in &parts {

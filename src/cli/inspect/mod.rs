@@ -2,7 +2,9 @@
 //! whatever its name; what is neither OpenVDB nor OpenEXR is taken for a scene.
 
 mod exr;
+mod grid_values;
 mod scene;
+mod vdb;
 
 use std::fs::File;
 use std::io::Read;
@@ -11,6 +13,8 @@ use std::path::Path;
 use super::args::InspectArguments;
 use super::error::CliError;
 
+/// First bytes of an OpenVDB file: a 64-bit number that spells ` BDV`.
+const VDB_MAGIC: &[u8] = b" BDV\0\0\0\0";
 /// First bytes of an OpenEXR file.
 const EXR_MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 
@@ -20,6 +24,8 @@ pub fn run(arguments: &InspectArguments) -> Result<(), CliError> {
     let start = first_bytes(path)?;
     if start.starts_with(EXR_MAGIC) || has_extension(path, "exr") {
         exr::inspect(path, arguments.json)
+    } else if start.starts_with(VDB_MAGIC) || has_extension(path, "vdb") {
+        vdb::inspect(path, arguments.json)
     } else {
         scene::inspect(path, arguments.json)
     }
@@ -28,7 +34,7 @@ pub fn run(arguments: &InspectArguments) -> Result<(), CliError> {
 fn first_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
     let mut bytes = Vec::new();
     File::open(path)
-        .and_then(|file| file.take(8).read_to_end(&mut bytes))
+        .and_then(|file| file.take(VDB_MAGIC.len() as u64).read_to_end(&mut bytes))
         .map_err(|source| CliError::Read { path: path.to_path_buf(), source })?;
     Ok(bytes)
 }

@@ -6,19 +6,18 @@ use photonvdb::scene::{Plan, Scene};
 use serde_json::json;
 
 use crate::cli::error::CliError;
-use crate::cli::print_to_stdout;
+use crate::cli::{print_json, print_to_stdout};
 
 /// Shows what the scene at `path` needs.
 pub fn inspect(path: &Path, as_json: bool) -> Result<(), CliError> {
     let scene = Scene::load(path)?;
     let plan = Plan::of(&scene);
     if as_json {
-        let value = json!({
+        return print_json(&json!({
             "plan": plan,
             "scene_hash": format!("{:016x}", scene.hash),
             "warnings": scene.warnings,
-        });
-        return print_to_stdout(&format!("{value:#}\n"));
+        }));
     }
     let warnings: String =
         scene.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();

@@ -28,8 +28,10 @@ impl ActiveVoxels {
 
     fn of_leaf(origin: [i32; 3], mask: &[u64; 8]) -> Option<Self> {
         // One word a layer of x; in it, one byte a row of y, and in that one bit a voxel of z.
-        let layers = mask.iter().enumerate().filter(|(_, word)| **word != 0).map(|(x, _)| x as i64);
-        let (first_x, last_x) = (layers.clone().next()?, layers.last()?);
+        let mut layers =
+            mask.iter().enumerate().filter(|(_, word)| **word != 0).map(|(x, _)| x as i64);
+        let first_x = layers.next()?;
+        let last_x = layers.next_back().unwrap_or(first_x);
         let rows = mask.iter().fold(0, |union, word| union | word);
         let columns = rows.to_le_bytes().iter().fold(0, |union, byte| union | byte);
         let low = [first_x, i64::from(rows.trailing_zeros() / 8), columns.trailing_zeros().into()];

@@ -47,6 +47,12 @@ impl LocalRay {
         self.direction.map(|d| d * length)
     }
 
+    /// Distances between neighbouring integer planes of each axis.
+    #[inline(always)]
+    pub(super) fn plane_distances(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.inverse[axis].abs() + self.never[axis])
+    }
+
     /// Whether the coordinate on an axis grows along the ray.
     #[inline(always)]
     pub(super) fn ascends(&self, axis: usize) -> bool {
@@ -55,8 +61,8 @@ impl LocalRay {
 
     /// Distance at which the ray crosses the plane of this coordinate; infinite if it does not move there.
     #[inline(always)]
-    pub(super) fn crossing(&self, axis: usize, plane: i64) -> f64 {
-        (plane as f64 - self.origin[axis]) * self.inverse[axis] + self.never[axis]
+    pub(super) fn crossing(&self, axis: usize, plane: f64) -> f64 {
+        (plane - self.origin[axis]) * self.inverse[axis] + self.never[axis]
     }
 
     /// The part of the span in the box of cells `first` to `last`.
@@ -72,8 +78,8 @@ impl LocalRay {
                 continue;
             }
             let (near, far) = if self.ascends(axis) { (lower, upper) } else { (upper, lower) };
-            inside.start = inside.start.max(self.crossing(axis, near));
-            inside.end = inside.end.min(self.crossing(axis, far));
+            inside.start = inside.start.max(self.crossing(axis, near as f64));
+            inside.end = inside.end.min(self.crossing(axis, far as f64));
         }
         (inside.start < inside.end).then_some(inside)
     }
@@ -127,11 +133,11 @@ impl<'a> BlockWalk<'a> {
             if self.ray.ascends(axis) { block.upper[axis] } else { block.lower[axis] }
         });
         let (axis, crossing) =
-            first_crossing(std::array::from_fn(|axis| self.ray.crossing(axis, faces[axis])));
+            first_crossing(std::array::from_fn(|axis| self.ray.crossing(axis, faces[axis] as f64)));
         let entry = self.cell;
         let mut end = crossing.max(self.rest.start);
-        let is_last = !(end < inside.end) || !self.enter_next(&block, axis, end);
-        if is_last {
+        let continues = end < inside.end && self.enter_next(&block, axis, end);
+        if !continues {
             end = inside.end;
             self.inside = None;
         }
@@ -144,14 +150,14 @@ impl<'a> BlockWalk<'a> {
     #[inline]
     fn enter_next(&mut self, block: &Block, axis: usize, distance: f64) -> bool {
         let point = self.ray.at(distance);
-        for other in 0..3 {
+        for (other, coordinate) in point.into_iter().enumerate() {
             // Rounding may put the point outside the block, or behind where the ray has been.
             let (low, high) = if self.ray.ascends(other) {
                 (self.cell[other], block.upper[other] - 1)
             } else {
                 (block.lower[other], self.cell[other])
             };
-            self.cell[other] = (point[other] as i64).clamp(low, high);
+            self.cell[other] = (coordinate as i64).clamp(low, high);
         }
         if self.ray.ascends(axis) {
             self.cell[axis] = block.upper[axis];
@@ -178,15 +184,11 @@ impl Iterator for BlockWalk<'_> {
 
 /// The axis of the least of three distances, and that distance.
 #[inline(always)]
-pub(super) fn first_crossing(crossings: [f64; 3]) -> (usize, f64) {
+fn first_crossing(crossings: [f64; 3]) -> (usize, f64) {
     let [x, y, z] = crossings;
-    if x <= y && x <= z {
-        (0, x)
-    } else if y <= z {
-        (1, y)
-    } else {
-        (2, z)
-    }
+    // Written to compile without branches, which would be mispredicted.
+    let (axis, least) = if y < x { (1, y) } else { (0, x) };
+    if z < least { (2, z) } else { (axis, least) }
 }
 
 #[cfg(test)]
@@ -250,7 +252,7 @@ mod tests {
                     end = piece.span.end;
                     sum += piece.span.length();
                     cell_count += 1;
-                    for (u, value) in [0.0, 0.5, 1.0].into_iter().zip(piece.density.values) {
+                    for (u, value) in [0.0, 0.5, 1.0].into_iter().zip(piece.density.values()) {
                         let at = ray.at(piece.span.start + u * piece.span.length());
                         let density = grid.local_density(at);
                         assert!((density - value).abs() < 1e-9, "{origin:?} {direction:?} {u}");

@@ -7,11 +7,11 @@ use std::ops::ControlFlow;
 
 use super::{
     DensityGrid,
-    block_walk::{BlockWalk, LocalRay, Piece, first_crossing},
+    block_walk::{BlockWalk, LocalRay, Piece},
     brick_atlas::BRICK_EDGE,
     brick_index::{Cell, Content},
     cubic::Cubic,
-    trilinear::{Corners, blend, triple_coefficient},
+    trilinear::{Corners, along},
 };
 use crate::math::Span;
 
@@ -72,8 +72,9 @@ impl DensityGrid {
                     visit(CellPiece { span: piece.span, density: Cubic::constant(density) })
                 }
                 Content::Corners(corners) => {
-                    let start = start_density(&corners, ray, piece.lower, piece.span.start);
-                    visit(cell_piece(&corners, ray, piece.lower, piece.span, start))
+                    let lower = piece.lower.map(|c| c as f64);
+                    let middle = ray.at(0.5 * (piece.span.start + piece.span.end));
+                    visit(cell_piece(&corners, ray, piece.span, weight(middle, lower)))
                 }
                 Content::Brick(brick) => self.for_each_brick_cell(ray, &piece, brick, &mut visit),
             };
@@ -91,53 +92,77 @@ impl DensityGrid {
         brick: usize,
         visit: &mut impl FnMut(CellPiece) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut cell = piece.entry;
+        let mut buffer = [0.0; MAX_CROSSINGS];
+        let ends = cell_ends(ray, piece, &mut buffer);
         let mut start = piece.span.start;
-        let mut density = None;
-        let steps: [i64; 3] = std::array::from_fn(|axis| if ray.ascends(axis) { 1 } else { -1 });
-        let far_side: [i64; 3] = std::array::from_fn(|axis| ray.ascends(axis).into());
-        let exits: Cell = std::array::from_fn(|axis| {
-            piece.lower[axis] + far_side[axis] * (BRICK_EDGE as i64 - 1)
-        });
-        let mut crossings: [f64; 3] =
-            std::array::from_fn(|axis| ray.crossing(axis, cell[axis] + far_side[axis]));
-        loop {
-            let (axis, crossing) = first_crossing(crossings);
-            let leaves = cell[axis] == exits[axis] || !(crossing < piece.span.end);
-            let end = if leaves { piece.span.end } else { crossing.max(start) };
-            if end > start {
-                let place = cell.map(|c| c as usize % BRICK_EDGE);
-                let corners = self.atlas.corners(brick, place);
-                let first = density.unwrap_or_else(|| start_density(&corners, ray, cell, start));
-                let part = cell_piece(&corners, ray, cell, Span::new(start, end), first);
-                density = Some(part.density.values[2]);
-                visit(part)?;
+        for &end in ends {
+            // Where rounding makes an empty piece of a corner there is nothing to integrate.
+            if end <= start {
+                continue;
             }
-            if leaves {
-                return ControlFlow::Continue(());
-            }
+            let (place, weight) = place_in_brick(ray, piece.lower, 0.5 * (start + end));
+            let corners = self.atlas.corners(brick, place);
+            visit(cell_piece(&corners, ray, Span::new(start, end), weight))?;
             start = end;
-            cell[axis] += steps[axis];
-            crossings[axis] = ray.crossing(axis, cell[axis] + far_side[axis]);
         }
+        ControlFlow::Continue(())
     }
 }
 
+/// A line crosses at most 7 planes between the cells of a brick on each axis, and then leaves it.
+const MAX_CROSSINGS: usize = 3 * (BRICK_EDGE - 1) + 1;
+
+/// Where a ray leaves the cells of a brick it crosses, in order. Finding all distances before any density keeps
+/// the mispredicted branches of the former from delaying the loads of the latter; adding up distances between
+/// planes is off by a few roundings, which moves the joints between polynomials that agree there.
 #[inline(always)]
-fn start_density(corners: &Corners, ray: &LocalRay, cell: Cell, start: f64) -> f64 {
-    blend(corners, weight(ray.at(start), cell)).max(0.0)
+fn cell_ends<'a>(ray: &LocalRay, piece: &Piece, ends: &'a mut [f64; MAX_CROSSINGS]) -> &'a [f64] {
+    let Span { start, end } = piece.span;
+    let [mut x, mut y, mut z]: [f64; 3] = std::array::from_fn(|axis| {
+        ray.crossing(axis, (piece.entry[axis] + i64::from(ray.ascends(axis))) as f64)
+    });
+    let [step_x, step_y, step_z] = ray.plane_distances();
+    // What is nearer to the end than this is the face the ray leaves the brick by.
+    let last = end - 1e-9 * (end - start);
+    let mut count = 0;
+    while count < MAX_CROSSINGS - 1 {
+        let first = if x < y { x } else { y };
+        let first = if z < first { z } else { first };
+        if first >= last {
+            break;
+        }
+        ends[count] = if first > start { first } else { start };
+        count += 1;
+        x += if x <= first { step_x } else { 0.0 };
+        y += if y <= first { step_y } else { 0.0 };
+        z += if z <= first { step_z } else { 0.0 };
+    }
+    ends[count] = end;
+    &ends[..=count]
+}
+
+/// The cell of a brick that holds a distance which is not on a face, and the place in the cell.
+#[inline(always)]
+fn place_in_brick(ray: &LocalRay, lower: Cell, distance: f64) -> ([usize; 3], [f64; 3]) {
+    /// Adding it rounds to an integer, which is then in the low bits.
+    const ROUNDER: f64 = (1_u64 << 52) as f64;
+    const LAST: f64 = (BRICK_EDGE - 1) as f64;
+    let point = weight(ray.at(distance), lower.map(|c| c as f64));
+    let rounded = point.map(|place| {
+        let place = if place > 0.5 { place - 0.5 } else { 0.0 };
+        (if place < LAST { place } else { LAST }) + ROUNDER
+    });
+    let cell = rounded.map(|c| c - ROUNDER);
+    (rounded.map(|c| c.to_bits() as usize % BRICK_EDGE), weight(point, cell))
 }
 
 #[inline(always)]
-fn cell_piece(corners: &Corners, ray: &LocalRay, cell: Cell, span: Span, start: f64) -> CellPiece {
-    let middle = blend(corners, weight(ray.at(0.5 * (span.start + span.end)), cell)).max(0.0);
-    let end = blend(corners, weight(ray.at(span.end), cell)).max(0.0);
-    let [x, y, z] = ray.displacement(span.length());
-    let third = triple_coefficient(corners) * x * y * z;
-    CellPiece { span, density: Cubic { values: [start, middle, end], third } }
+fn cell_piece(corners: &Corners, ray: &LocalRay, span: Span, middle: [f64; 3]) -> CellPiece {
+    let half = ray.displacement(0.5 * span.length());
+    CellPiece { span, density: along(corners, middle, half) }
 }
 
 #[inline(always)]
-fn weight(point: [f64; 3], cell: Cell) -> [f64; 3] {
-    std::array::from_fn(|axis| point[axis] - cell[axis] as f64)
+fn weight(point: [f64; 3], cell: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| point[axis] - cell[axis])
 }

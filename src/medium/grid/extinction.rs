@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     math::{Ball, DAffine3, DMat3, DVec3, Random, Ray, Rgb, Span},
-    medium::{BallIntegral, Bounds, Extinction, Flight, Parallelepiped, ProfileKnot, RayProfile},
+    medium::{
+        BallIntegral, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, Parallelepiped,
+        ProfileKnot, RayProfile,
+    },
 };
 
 /// Extinction of a density grid in world space, the same in all channels.
@@ -147,6 +150,23 @@ impl Extinction for GridExtinction {
         flight_to(self.distance_at(ray, span, -(-u).ln_1p()))
     }
 
+    /// One walk along the ray serves the opacity and the inversion.
+    fn boosted_flight(
+        &self,
+        ray: &Ray,
+        span: Span,
+        _: Rgb,
+        boosted: BoostedQuantile,
+        profile: &mut RayProfile,
+    ) -> BoostedFlight {
+        self.profile(ray, span, profile);
+        let opacity = -(-profile.optical_depth(span.end).x).exp_m1();
+        boosted.flight(opacity, |quantile| {
+            let distance = profile.distance_at(-(-quantile).ln_1p(), 0);
+            flight_to((distance < span.end).then_some(distance))
+        })
+    }
+
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile) {
         profile.begin(span);
         let Some(placement) = &self.placement else { return };
@@ -156,7 +176,7 @@ impl Extinction for GridExtinction {
             profile.push(ProfileKnot {
                 distance: piece.span.end,
                 optical_depth: self.density_scale * depth,
-                sigma_t: piece.density.values.map(|density| self.density_scale * density),
+                sigma_t: piece.density.values().map(|density| self.density_scale * density),
             });
             ControlFlow::Continue(())
         });

@@ -1,4 +1,4 @@
-//! Builds the sampling structure from voxels, in parallel and in an order that depends on the voxels alone.
+//! Builds the sampling structure from voxels, in parallel. What it samples to depends on the voxels alone.
 //!
 //! Only bricks that touch a leaf are stored in full: a brick with a leaf, and the up to seven below it
 //! whose last layer of cells reaches into the leaf. Bricks, regions and roots that only touch constant

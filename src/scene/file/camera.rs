@@ -10,6 +10,9 @@ use crate::scene::error::Problem;
 /// Longest side of an image \[pixels\].
 const MAX_SIDE: u64 = 16384;
 
+/// An 8K image is just below; its film takes 7 GB while it is made.
+const MAX_PIXELS: u64 = 1 << 25;
+
 /// Sine of the angle below which two directions count as parallel.
 const PARALLEL: f64 = 1e-9;
 
@@ -21,7 +24,7 @@ const PARALLEL: f64 = 1e-9;
 /// | `look_at` | 3 numbers | m | required | not `position` | a point in the middle of the image |
 /// | `up` | 3 numbers | | `[0, 1, 0]` | not along the view | direction that the image shows upright |
 /// | `vertical_fov` | number | degrees | 35 | (0, 180) | full angle over the image height |
-/// | `resolution` | 2 integers | pixels | `[640, 360]` | 1 to 16384 | width, height; row 0 is the top |
+/// | `resolution` | 2 integers | pixels | `[640, 360]` | 1 to 16384, together at most 2^25 | width, height; row 0 is the top |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct CameraSection {
@@ -46,6 +49,8 @@ impl CameraSection {
         table.ensure("vertical_fov", fov > 0.0 && fov < 180.0, "must lie in (0, 180) degrees")?;
         let in_range = section.resolution.iter().all(|side| (1..=MAX_SIDE).contains(side));
         table.ensure("resolution", in_range, "each side must lie in 1 to 16384 pixels")?;
+        let pixels = section.resolution.iter().product::<u64>();
+        table.ensure("resolution", pixels <= MAX_PIXELS, "must have at most 2^25 pixels")?;
         section.check_view(table)?;
         Ok(section)
     }

@@ -10,7 +10,7 @@ use crate::scene::error::Problem;
 ///
 /// | key | type | unit | default | range | meaning |
 /// |---|---|---|---|---|---|
-/// | `k` | integer | | 100 | 1 (2 with divisor `k-1`) to 10^6 | photons of one estimate |
+/// | `k` | integer | | 50 | 1 (2 with divisor `k-1`) to 10^6 | photons of one estimate |
 /// | `divisor` | `"k"`, `"k-1"`, `"k-1/2"` | | `"k-1"` | | numerator of the estimate; `"calibrated"` is reserved |
 /// | `kernel` | `"constant"`, `"epanechnikov"` | | `"constant"` | | weight by distance |
 /// | `max_radius` | number | m | a share of the medium's size | above 0 | largest radius of a query |
@@ -68,7 +68,7 @@ impl EstimateSettings {
         let divisor = table.choose("divisor", &DIVISORS)?.unwrap_or(Some(Divisor::KMinus1));
         let reserved = "\"calibrated\" is not available yet; use \"k-1\", \"k\" or \"k-1/2\"";
         let divisor = divisor.ok_or_else(|| table.problem("divisor", reserved))?;
-        let k: u64 = table.get_or("k", 100)?;
+        let k: u64 = table.get_or("k", 50)?;
         table.ensure("k", (1..=MAX_K).contains(&k), "must lie in 1 to 1000000")?;
         let leaves_none = k == 1 && divisor == Divisor::KMinus1;
         table.ensure("k", !leaves_none, "must be at least 2 with divisor \"k-1\"")?;

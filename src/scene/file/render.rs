@@ -11,7 +11,7 @@ use crate::scene::error::Problem;
 /// |---|---|---|---|---|---|
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
-/// | `light_samples` | integer | | 4 | 1 to 65536 | single-scattering points a ray and light |
+/// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -31,7 +31,7 @@ impl RenderSettings {
         Ok(Self {
             samples_per_pixel: read_count(table, "samples_per_pixel", 4)?,
             march_samples: read_count(table, "march_samples", 8)?,
-            light_samples: read_count(table, "light_samples", 4)?,
+            light_samples: read_count(table, "light_samples", 8)?,
             photons_only: table.get_or("photons_only", false)?,
         })
     }
