@@ -11,17 +11,18 @@ use photonvdb::math::DVec3;
 use photonvdb::medium::Bounds;
 use photonvdb::render::{LitScene, Unobserved};
 use photonvdb::scene::Scene;
-use photonvdb::trace::TracedPhotons;
+use photonvdb::trace::{Photon, TracedPhotons};
 use transport_support::*;
 
-/// Squared distance from the light of every collision, where sigma_t = 1.
-fn distances_squared<'a>(
+/// Squared distance from the light and power of every collision, where sigma_t = 1 and the light sends 1 W.
+fn collisions<'a>(
     scene: &Scene,
     traced: &'a TracedPhotons,
-) -> impl Iterator<Item = f64> + 'a {
+) -> impl Iterator<Item = (f64, f64)> + 'a {
     let frame = frame(scene);
     let light = scene.lights[0].position().unwrap();
-    traced.photons.iter().map(move |p| frame.to_world(p.position).distance_squared(light))
+    let distance_squared = move |p: &Photon| frame.to_world(p.position).distance_squared(light);
+    traced.photons.iter().map(move |p| (distance_squared(p), power(p, 0)))
 }
 
 /// Collisions per photon within a radius: independent of how photons are emitted.
@@ -41,17 +42,17 @@ fn collisions_within_a_radius_of_an_infinite_medium() {
         let counts = over_seeds(&mut scene, |scene| {
             let traced = trace(scene);
             radii.map(|radius| {
-                let inside = distances_squared(scene, &traced).filter(|r| *r < radius * radius);
-                inside.count() as f64 / 4000.0
+                let inside = collisions(scene, &traced).filter(|(r, _)| *r < radius * radius);
+                inside.map(|(_, power)| power).sum()
             })
         });
         for (count, radius) in counts.iter().zip(["0.1", "0.5", "1", "2", "5", "20"]) {
             let exact = number(&enclosed[albedo], radius);
-            // Beyond 20 mean free paths lies less than one photon of all runs.
-            let beyond = 1e-8;
+            // Powers are of single precision.
+            let rounding = 1e-7 * exact;
             count.assert_within(
                 exact,
-                beyond,
+                rounding,
                 &format!("albedo {albedo}, {kind:?}, within {radius}"),
             );
         }
@@ -72,9 +73,9 @@ fn fluence_by_radius_of_an_anisotropic_infinite_medium() {
             let traced = trace(scene);
             radii.map(|radius| {
                 let shell = (0.95 * radius).powi(2)..(1.05 * radius).powi(2);
-                let inside = distances_squared(scene, &traced).filter(|r| shell.contains(r));
-                let by_area: f64 = inside.map(|r| 1.0 / (4.0 * PI * r)).sum();
-                by_area / (0.1 * radius) / 4000.0
+                let inside = collisions(scene, &traced).filter(|(r, _)| shell.contains(r));
+                let by_area = inside.map(|(r, power)| power / (4.0 * PI * r));
+                by_area.sum::<f64>() / (0.1 * radius)
             })
         });
         for ((fluence, radius), exact) in fluences.iter().zip(radii).zip(numbers(row, "phi")) {
@@ -105,7 +106,7 @@ fn moments_and_counts_of_collisions() {
             let traced = trace(scene);
             let frame = frame(scene);
             let height: f64 = traced.photons.iter().map(|p| frame.to_world(p.position).z).sum();
-            let square: f64 = distances_squared(scene, &traced).sum();
+            let square: f64 = collisions(scene, &traced).map(|(square, _)| square).sum();
             // A photon dies after its n-th collision with probability (1 - a) a^(n-1).
             let mut reached = vec![0.0; 2000];
             traced.photons.iter().for_each(|p| reached[p.order as usize] += 1.0);
@@ -138,7 +139,8 @@ fn collisions_and_escape_of_a_ball() {
         scene.photons.emission = kind;
         let [collisions, escape] = over_seeds(&mut scene, |scene| {
             let traced = trace(scene);
-            [traced.photons.len() as f64 / 4000.0, traced.balance.escaped.x]
+            let collided = traced.photons.iter().map(|p| power(p, 0)).sum();
+            [collided, traced.balance.escaped.x]
         });
         let case = format!("albedo {albedo}, radius {radius}, {kind:?}");
         collisions.assert_is(number(row, "mean_collisions"), &format!("{case}: collisions"));

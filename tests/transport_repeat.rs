@@ -4,10 +4,10 @@ mod grid_support;
 mod transport_support;
 
 use grid_support::cloud;
-use photonvdb::emission::{Emission, EmissionKind};
+use photonvdb::emission::EmissionKind;
 use photonvdb::film::Film;
 use photonvdb::map::{Columns, PhotonMap};
-use photonvdb::math::{DAffine3, DVec3, Rgb, uniform};
+use photonvdb::math::{DAffine3, DVec3, Rgb};
 use photonvdb::medium::Medium;
 use photonvdb::render::{LitScene, RenderOptions, Unobserved, render};
 use photonvdb::scene::Scene;
@@ -124,16 +124,6 @@ fn more_random_photons_begin_with_the_same() {
         let mut scene = scene(medium, white_sky(), 4096);
         scene.photons.emission = EmissionKind::Random;
         let few = trace(&scene);
-        let emission = |count| {
-            let (lights, bounds) = (&scene.lights, &scene.medium.bounds);
-            Emission::new(lights, bounds, 1.0, EmissionKind::Random, count, 0)
-        };
-        let (of_few, of_many) = (emission(4096), emission(16_384));
-        for index in (0..4096).step_by(17) {
-            let (mut a, mut b) = (of_few.photon(index).unwrap(), of_many.photon(index).unwrap());
-            assert_eq!((a.ray, a.power, a.flight_quantile), (b.ray, b.power * 4.0, None));
-            assert_eq!(uniform(&mut a.random), uniform(&mut b.random));
-        }
         scene.photons.count = 16_384;
         let many = trace(&scene);
         for (a, b) in few.photons.iter().zip(&many.photons) {

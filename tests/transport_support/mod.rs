@@ -11,11 +11,12 @@ use photonvdb::light::{Environment, Light, PointLight};
 use photonvdb::math::square_maps::square_to_sphere;
 use photonvdb::math::{DVec2, DVec3, Frame, Random, Ray, Rgb, uniform};
 use photonvdb::medium::{
-    Bounds, ChromaticExtinction, GridExtinction, Medium, MediumExtinction, Phase, UniformExtinction,
+    Bounds, ChromaticExtinction, Extinction, GridExtinction, Medium, MediumExtinction, Phase,
+    UniformExtinction,
 };
 use photonvdb::render::{LitScene, Unobserved};
 use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
-use photonvdb::trace::{MapFrame, TraceSettings, TracedPhotons, trace_photons};
+use photonvdb::trace::{MapFrame, Photon, TraceSettings, TracedPhotons, trace_photons};
 
 /// Runs behind every z-score: independent photon maps.
 pub const RUNS: u64 = 32;
@@ -98,31 +99,39 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
 
 /// All photons of the scene, those that have not scattered yet included.
 pub fn trace(scene: &Scene) -> TracedPhotons {
-    let Scene { medium, photons, .. } = scene;
-    let emission = Emission::new(
-        &scene.lights,
-        &medium.bounds,
-        1.0,
-        photons.emission,
-        photons.count,
-        photons.seed,
-    );
-    let settings =
-        TraceSettings { max_order: photons.max_order, min_stored_order: 0, max_stored: usize::MAX };
-    let frame = frame(scene);
-    let traced = match &medium.extinction {
-        MediumExtinction::Uniform(extinction) => {
-            trace_photons(&emission, medium, extinction, frame, settings, |_| ())
-        }
-        MediumExtinction::Chromatic(extinction) => {
-            trace_photons(&emission, medium, extinction, frame, settings, |_| ())
-        }
-        MediumExtinction::Grid(extinction) => {
-            trace_photons(&emission, medium, &**extinction, frame, settings, |_| ())
-        }
+    match &scene.medium.extinction {
+        MediumExtinction::Uniform(extinction) => trace_through(scene, extinction),
+        MediumExtinction::Chromatic(extinction) => trace_through(scene, extinction),
+        MediumExtinction::Grid(extinction) => trace_through(scene, &**extinction),
+    }
+}
+
+fn trace_through<E: Extinction>(scene: &Scene, extinction: &E) -> TracedPhotons {
+    let emission = emission(scene, extinction);
+    let settings = TraceSettings {
+        max_order: scene.photons.max_order,
+        min_stored_order: 0,
+        max_stored: usize::MAX,
     };
+    let traced =
+        trace_photons(&emission, &scene.medium, extinction, frame(scene), settings, |_| ());
     assert!(!traced.overflow);
     traced
+}
+
+pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E) -> Emission<'a> {
+    let Scene { medium, photons, lights, .. } = scene;
+    let opacity = |ray: &Ray| {
+        let span = medium.bounds.intersect(ray);
+        span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
+    };
+    let PhotonSettings { count, emission, seed, .. } = *photons;
+    Emission::new(lights, &medium.bounds, opacity, 1.0, emission, count, seed)
+}
+
+/// Power of a stored photon's channel \[W\].
+pub fn power(photon: &Photon, channel: usize) -> f64 {
+    f64::from(photon.power[channel])
 }
 
 pub fn frame(scene: &Scene) -> MapFrame {
