@@ -10,7 +10,7 @@ mod transport_support;
 
 use grid_support::cloud;
 use photonvdb::math::{DAffine3, DVec3, Random, Ray, Stream, uniform};
-use photonvdb::medium::Medium;
+use photonvdb::medium::{Medium, Phase};
 use photonvdb::render::{RenderOptions, Unobserved, render};
 use photonvdb::scene::Scene;
 use transport_support::*;
@@ -26,7 +26,7 @@ const CLUSTER_BIAS: f64 = 0.005;
 fn rays_through(medium: &Medium, seed: u64) -> (Vec<Ray>, Random) {
     let middle = medium.bounds.enclosing_ball().unwrap();
     let mut random = Stream::Experiment.random(seed, 1);
-    let rays = (0..100)
+    let rays = (0..70)
         .map(|_| {
             let impact = 0.6 * middle.radius * uniform(&mut random).sqrt();
             passing_ray(middle.center, impact, 3.0 * middle.radius, &mut random)
@@ -62,11 +62,14 @@ fn smooth_cloud(g: f64) -> Medium {
 /// Sparse smoke with wisps of all densities.
 fn smoke(g: f64) -> Medium {
     let medium = Scene::load(&tests().join("scenes/smoke_sun.toml")).unwrap().medium;
-    let phase = photonvdb::medium::Phase::HenyeyGreenstein { g };
+    let phase = Phase::HenyeyGreenstein { g };
     Medium { albedo: DVec3::ONE, phase, ..medium }
 }
 
-const MEDIA: [(&str, fn(f64) -> Medium); 4] =
+/// A medium that absorbs nothing, of mean scattering cosine g.
+type White = fn(f64) -> Medium;
+
+const MEDIA: [(&str, White); 4] =
     [("box", box_of_fog), ("ball", ball_of_fog), ("cloud", smooth_cloud), ("smoke", smoke)];
 
 #[test]

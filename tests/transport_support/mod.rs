@@ -66,7 +66,7 @@ pub fn white_sky() -> Light {
     Light::Environment(Environment::Constant(Rgb::ONE))
 }
 
-/// A scene of default settings, but for the number of photons.
+/// A scene of everyday settings.
 pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
     let camera =
         Camera::look_at(DVec3::new(2.2, 1.8, 4.2), DVec3::ZERO, DVec3::Y, 0.66, [32, 32]).unwrap();
