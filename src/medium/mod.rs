@@ -20,7 +20,7 @@ pub use overlap::BallIntegral;
 pub use phase::{ISOTROPIC, Phase};
 pub use profile::{ProfileKnot, RayProfile};
 
-use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span};
+use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp};
 
 /// The medium of a scene.
 #[derive(Debug)]
@@ -56,6 +56,11 @@ pub trait Extinction: Sync {
 
     /// Integral of sigma_t over the span, exact up to rounding.
     fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb;
+
+    /// exp(-optical depth) over the span. A grid stops looking where nothing is left to see.
+    fn transmittance(&self, ray: &Ray, span: Span) -> Rgb {
+        exp(-self.optical_depth(ray, span))
+    }
 
     /// Probability that a photon of the given power collides within the span: 1 - T, for a chromatic medium
     /// averaged over the channels' shares of the power.

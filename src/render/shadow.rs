@@ -1,6 +1,6 @@
 //! Transmittance from a place in the medium to a light.
 
-use crate::math::{DVec3, Ray, Rgb, Span, exp};
+use crate::math::{DVec3, Ray, Rgb, Span};
 use crate::medium::{Extinction, Medium};
 
 /// Transmittance from `place` along `direction` over `distance` \[m\] (infinite for distant lights), by the exact
@@ -14,5 +14,5 @@ pub fn transmittance_to<E: Extinction>(
 ) -> Rgb {
     let ray = Ray::new(place, direction);
     let inside = medium.bounds.intersect(&ray).and_then(|s| s.intersect(Span::new(0.0, distance)));
-    inside.map_or(Rgb::ONE, |span| exp(-extinction.optical_depth(&ray, span)))
+    inside.map_or(Rgb::ONE, |span| extinction.transmittance(&ray, span))
 }

@@ -15,6 +15,9 @@ use crate::{
     },
 };
 
+/// Optical depth at which a ray counts as opaque: a transmittance of 2e-28, far below the rounding of 1.
+const OPAQUE_DEPTH: f64 = 64.0;
+
 /// Extinction of a density grid in world space, the same in all channels.
 #[derive(Debug)]
 pub struct GridExtinction {
@@ -139,6 +142,17 @@ impl Extinction for GridExtinction {
         }
     }
 
+    fn transmittance(&self, ray: &Ray, span: Span) -> Rgb {
+        let Some(placement) = &self.placement else { return Rgb::ONE };
+        let limit = OPAQUE_DEPTH / self.density_scale;
+        let mut depth = 0.0;
+        self.grid.for_each_cell(&placement.local_ray(ray), span, |piece| {
+            depth += piece.depth();
+            if depth < limit { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        Rgb::splat((-self.density_scale * depth).exp())
+    }
+
     fn sample_flight(&self, ray: &Ray, span: Span, _: Rgb, random: &mut Random) -> Flight {
         flight_to(self.placement.as_ref().and_then(|placement| {
             let local = placement.local_ray(ray);
@@ -170,6 +184,7 @@ impl Extinction for GridExtinction {
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile) {
         profile.begin(span);
         let Some(placement) = &self.placement else { return };
+        let limit = OPAQUE_DEPTH / self.density_scale;
         let mut depth = 0.0;
         self.grid.for_each_cell(&placement.local_ray(ray), span, |piece| {
             depth += piece.depth();
@@ -178,7 +193,7 @@ impl Extinction for GridExtinction {
                 optical_depth: self.density_scale * depth,
                 sigma_t: piece.density.values().map(|density| self.density_scale * density),
             });
-            ControlFlow::Continue(())
+            if depth < limit { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
     }
 
