@@ -103,8 +103,7 @@ fn grey_media_resample_nothing() {
     }
 }
 
-/// Photons of three colours at once, against photons of one colour in the medium that this colour sees. What the weights
-/// of flights add or take is counted apart, and belongs to what escapes.
+/// Photons of three colours at once, against photons of one colour in the medium that this colour sees.
 #[test]
 fn each_channel_of_a_chromatic_medium_goes_its_own_way() {
     for bounds in [CUBE, Bounds::Sphere { center: DVec3::X, radius: 1.5 }] {
@@ -112,19 +111,23 @@ fn each_channel_of_a_chromatic_medium_goes_its_own_way() {
         let mut colored = scene(fog(bounds, COLORS, TINTS, 0.4), light(), 4000);
         let figures = over_seeds(&mut colored, |scene| {
             let PowerBalance { absorbed, escaped, resampled, .. } = balance_of(scene);
-            let [a, e] = [absorbed, escaped + resampled].map(|rgb| rgb.to_array());
-            [a[0], a[1], a[2], e[0], e[1], e[2]]
+            [absorbed, escaped, resampled].map(|rgb| rgb.to_array()).concat().try_into().unwrap()
         });
+        let figures: [Runs; 9] = figures;
         for channel in 0..3 {
+            figures[6 + channel].assert_is(0.0, &format!("resampled, channel {channel}"));
             let medium = grey_fog(bounds, COLORS[channel], TINTS[channel], 0.4);
             let mut grey = scene(medium, light(), 4000);
             let [absorbed, escaped] = over_seeds(&mut grey, |scene| {
                 let balance = balance_of(scene);
                 [balance.absorbed.x, balance.escaped.x]
             });
-            let of_channel = |figure| format!("{figure}, channel {channel}");
-            figures[channel].minus(absorbed).assert_is(0.0, &of_channel("absorbed"));
-            figures[3 + channel].minus(escaped).assert_is(0.0, &of_channel("escaped"));
+            figures[channel]
+                .minus(absorbed)
+                .assert_is(0.0, &format!("absorbed, channel {channel}"));
+            figures[3 + channel]
+                .minus(escaped)
+                .assert_is(0.0, &format!("escaped, channel {channel}"));
         }
     }
 }

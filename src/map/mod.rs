@@ -9,6 +9,7 @@ mod morton;
 mod nearest;
 mod packed;
 
+pub use morton::morton_code;
 pub use nearest::{Nearest, NearestPhotons, Neighbor};
 pub use packed::PackedDirection;
 

@@ -1,4 +1,5 @@
-//! Sorting photons along a Morton (Z-order) curve.
+//! The Morton (Z-order) curve: photons sorted along it are near in memory where they are near in space, and queries
+//! answered along it find what the last one found.
 
 use rayon::prelude::*;
 
@@ -33,14 +34,17 @@ pub fn sorted_indices(photons: &[Photon]) -> Vec<u32> {
         .enumerate()
         .filter(|(_, p)| finite(p))
         .map(|(index, p)| {
-            let code = spread(cell(p.position, 0)) << 2
-                | spread(cell(p.position, 1)) << 1
-                | spread(cell(p.position, 2));
-            (code, index as u32)
+            let cells = std::array::from_fn(|axis| cell(p.position, axis));
+            (morton_code(cells), index as u32)
         })
         .collect();
     keyed.par_sort_unstable();
     keyed.into_par_iter().map(|(_, index)| index).collect()
+}
+
+/// The place on the curve of a cell with 21 bits an axis.
+pub fn morton_code([x, y, z]: [u64; 3]) -> u64 {
+    spread(x) << 2 | spread(y) << 1 | spread(z)
 }
 
 /// Puts two zero bits between the 21 low bits.

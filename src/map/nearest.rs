@@ -50,7 +50,7 @@ pub const RADIUS_FLOOR: f32 = 1e-6;
 
 /// A gather by bound visits the photons of the whole bounding ball: beyond this many last radii the tree's own
 /// search is cheaper.
-const WARM_RATIO: f32 = 1.4;
+const WARM_RATIO: f32 = 1.8;
 
 impl<'a> NearestPhotons<'a> {
     /// A finder in a map.

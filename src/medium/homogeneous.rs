@@ -6,7 +6,9 @@
 //! unbiased and never weighs by more than 1 / q_c.
 
 use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp, uniform};
-use crate::medium::{BallMoments, Bounds, Extinction, Flight, RayProfile};
+use crate::medium::{
+    BallMoments, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, RayProfile,
+};
 
 /// The same sigma_t everywhere and in every channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +100,26 @@ impl Extinction for ChromaticExtinction {
         let density = self.sigma_t * exp(-self.sigma_t * distance);
         let weight = density / share.dot(density);
         Flight::Collision { distance: span.start + distance, weight }
+    }
+
+    /// What escapes has the colour that the medium leaves it, whether the photon collides besides or not.
+    fn boosted_flight(
+        &self,
+        ray: &Ray,
+        span: Span,
+        power: Rgb,
+        boosted: BoostedQuantile,
+        _profile: &mut RayProfile,
+    ) -> BoostedFlight {
+        let opacity = self.opacity(ray, span, power);
+        let transmittance = exp(-self.optical_depth(ray, span));
+        let natural = boosted.flight(opacity, |u| self.invert_flight(ray, span, power, u));
+        let escape_weight = if opacity < 1.0 { transmittance / (1.0 - opacity) } else { Rgb::ONE };
+        let flight = match natural.flight {
+            Flight::Escape { .. } => Flight::Escape { weight: escape_weight },
+            collision => collision,
+        };
+        BoostedFlight { flight, escape_weight, ..natural }
     }
 
     fn profile(&self, _ray: &Ray, span: Span, profile: &mut RayProfile) {

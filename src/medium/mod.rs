@@ -129,6 +129,8 @@ pub struct BoostedFlight {
     pub flight: Flight,
     /// In (0, 1\].
     pub share: f64,
+    /// Factor on the power that escapes: 1 where all channels share one sigma_t.
+    pub escape_weight: Rgb,
 }
 
 impl BoostedQuantile {
@@ -138,9 +140,11 @@ impl BoostedQuantile {
         let probability = (opacity * self.boost).min(1.0);
         if self.u < probability {
             let flight = invert(opacity * (self.u / probability));
-            return BoostedFlight { flight, share: opacity / probability };
+            let share = opacity / probability;
+            return BoostedFlight { flight, share, escape_weight: Rgb::ONE };
         }
-        BoostedFlight { flight: Flight::Escape { weight: Rgb::ONE }, share: 1.0 }
+        let flight = Flight::Escape { weight: Rgb::ONE };
+        BoostedFlight { flight, share: 1.0, escape_weight: Rgb::ONE }
     }
 }
 

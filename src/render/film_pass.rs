@@ -6,6 +6,7 @@ use crate::emission::Strata;
 use crate::film::{Film, Pixel};
 use crate::math::{DVec2, Random, Rgb, Stream, uniform};
 use crate::medium::Extinction;
+use crate::render::photon_query::{PhotonQuery, sort_along_curve};
 use crate::render::pixel_peak::{WeightedPlace, polar_sample};
 use crate::render::{LitMedium, Observer, Reader};
 use crate::scene::Scene;
@@ -38,17 +39,17 @@ pub fn add_pass<E: Extinction>(
         .into_par_iter()
         .map(|tile| {
             let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-            let mut pass =
-                PixelPass { scene, strata: &strata, peaks: &peaks, reader: lit.reader() };
-            let rows = top..(top + TILE).min(height);
-            let pixels: Vec<(usize, Pixel)> = rows
-                .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
-                .map(|(x, y)| {
+            let mut pass = TilePass::new(scene, &strata, &peaks, lit.reader());
+            let mut indices = Vec::new();
+            for y in top..(top + TILE).min(height) {
+                for x in left..(left + TILE).min(width) {
                     let index = y * width + x;
                     let mut random = Stream::Pixel.random(seed, index as u64);
-                    (index, pass.pixel(x, y, &mut random))
-                })
-                .collect();
+                    pass.add_pixel(x, y, &mut random);
+                    indices.push(index);
+                }
+            }
+            let pixels: Vec<(usize, Pixel)> = indices.into_iter().zip(pass.finish()).collect();
             observer.advanced(pixels.len() as u64);
             pixels
         })
@@ -70,52 +71,99 @@ fn peaks(scene: &Scene) -> Vec<(usize, DVec2)> {
     }
 }
 
-/// What the pixels of a tile share.
-struct PixelPass<'a, E> {
+/// The pixels of a tile in the making.
+struct TilePass<'a, E> {
     scene: &'a Scene,
     strata: &'a Strata,
     peaks: &'a [(usize, DVec2)],
     reader: Reader<'a, E>,
+    pixels: Vec<Pixel>,
+    /// Queries answered for each pixel.
+    query_counts: Vec<usize>,
+    queries: Vec<PhotonQuery>,
 }
 
-impl<E: Extinction> PixelPass<'_, E> {
-    fn pixel(&mut self, x: usize, y: usize, random: &mut Random) -> Pixel {
+/// Queries kept before they are answered: enough to be dense, few enough for any number of samples.
+const QUERY_BATCH: usize = 16384;
+
+impl<'a, E: Extinction> TilePass<'a, E> {
+    fn new(
+        scene: &'a Scene,
+        strata: &'a Strata,
+        peaks: &'a [(usize, DVec2)],
+        reader: Reader<'a, E>,
+    ) -> Self {
+        let (pixels, query_counts, queries) = (Vec::new(), Vec::new(), Vec::new());
+        Self { scene, strata, peaks, reader, pixels, query_counts, queries }
+    }
+
+    /// Traces the rays of the next pixel.
+    fn add_pixel(&mut self, x: usize, y: usize, random: &mut Random) {
         let corner = DVec2::new(x as f64, y as f64);
         let middle = corner + DVec2::splat(0.5);
         let near = |place: DVec2| (place - middle).abs().max_element() <= SLOPE_REACH;
         let peaks: Vec<(usize, DVec2)> =
             self.peaks.iter().copied().filter(|(_, place)| near(*place)).collect();
         let skipped: Vec<usize> = peaks.iter().map(|(light, _)| *light).collect();
+        let number = self.pixels.len();
+        self.pixels.push(Pixel::default());
+        self.query_counts.push(0);
 
         let samples = self.scene.render.samples_per_pixel;
         let share = 1.0 / samples as f64;
-        let mut pixel = Pixel::default();
-        let mut queries = 0;
         for sample in 0..samples {
             let cell = self.strata.cell(sample as u64);
             let offset = DVec2::new(cell[0].at(uniform(random)), cell[1].at(uniform(random)));
             let place = corner + offset;
             let ray = self.scene.camera.ray(place.x, place.y);
-            let seen = self.reader.light_along(&ray, f64::INFINITY, &skipped, random);
+            let (reader, queries) = (&mut self.reader, &mut self.queries);
+            let seen =
+                reader.direct_light(&ray, f64::INFINITY, &skipped, number as u32, queries, random);
+            let pixel = &mut self.pixels[number];
             pixel.single_scatter += seen.single_scatter * share;
-            pixel.multiple_scatter += seen.multiple_scatter * share;
             pixel.emission += seen.emission * share;
             pixel.transmittance += seen.transmittance * share;
-            pixel.photon_count += seen.photon_count as f64;
-            pixel.kernel_radius += seen.radius_sum;
-            queries += seen.query_count;
-        }
-        // Linear weights may read a little below 0 where next to nothing scatters.
-        pixel.single_scatter = pixel.single_scatter.max(Rgb::ZERO);
-        pixel.multiple_scatter = pixel.multiple_scatter.max(Rgb::ZERO);
-        if queries > 0 {
-            pixel.photon_count /= queries as f64;
-            pixel.kernel_radius /= queries as f64;
+            if self.queries.len() >= QUERY_BATCH {
+                self.answer_queries();
+            }
         }
         for (light, center) in peaks {
-            pixel.single_scatter += self.peak(light, center, corner, random);
+            let peak = self.peak(light, center, corner, random);
+            self.pixels[number].single_scatter += peak;
         }
-        pixel
+    }
+
+    /// Adds what the photon map says to the pixels that asked.
+    fn answer_queries(&mut self) {
+        let mut queries = std::mem::take(&mut self.queries);
+        sort_along_curve(&mut queries);
+        let share = 1.0 / self.scene.render.samples_per_pixel as f64;
+        for query in &queries {
+            let scattered = self.reader.from_photons(query);
+            let pixel = &mut self.pixels[query.pixel as usize];
+            pixel.single_scatter += scattered.single * share;
+            pixel.multiple_scatter += scattered.multiple * share;
+            pixel.photon_count += scattered.photon_count as f64;
+            pixel.kernel_radius += scattered.radius;
+            self.query_counts[query.pixel as usize] += 1;
+        }
+        queries.clear();
+        self.queries = queries;
+    }
+
+    /// The finished pixels.
+    fn finish(mut self) -> Vec<Pixel> {
+        self.answer_queries();
+        for (pixel, &count) in self.pixels.iter_mut().zip(&self.query_counts) {
+            // Linear weights may read a little below 0 where next to nothing scatters.
+            pixel.single_scatter = pixel.single_scatter.max(Rgb::ZERO);
+            pixel.multiple_scatter = pixel.multiple_scatter.max(Rgb::ZERO);
+            if count > 0 {
+                pixel.photon_count /= count as f64;
+                pixel.kernel_radius /= count as f64;
+            }
+        }
+        self.pixels
     }
 
     /// Single scattering of a light over a pixel that holds it, or is near it.

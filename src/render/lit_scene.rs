@@ -78,7 +78,7 @@ impl<'a> LitScene<'a> {
 
 impl<E: Extinction> LightReader for Reader<'_, E> {
     fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance {
-        self.light_along(ray, max_distance, &[], random)
+        self.light_along(ray, max_distance, random)
     }
 
     fn transmittance(&self, ray: &Ray, max_distance: f64) -> Rgb {

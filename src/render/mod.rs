@@ -8,6 +8,7 @@ mod film_pass;
 mod lit_medium;
 mod lit_scene;
 mod observer;
+mod photon_query;
 mod pixel_peak;
 mod reader;
 mod report;

@@ -1,9 +1,10 @@
 //! Reading a lit medium along rays.
 
-use crate::estimate::Estimator;
+use crate::estimate::{Estimator, InScattered};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
+use crate::render::photon_query::PhotonQuery;
 use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
 use crate::scene::Scene;
@@ -19,12 +20,6 @@ pub struct RayRadiance {
     pub emission: Rgb,
     /// Transmittance of the ray's whole part in the medium.
     pub transmittance: Rgb,
-    /// Photon-map queries made.
-    pub query_count: usize,
-    /// Photons found, summed over queries.
-    pub photon_count: usize,
-    /// Kernel radii, summed over queries \[m\].
-    pub radius_sum: f64,
 }
 
 /// Reads a lit medium, from one thread: light along rays.
@@ -33,12 +28,14 @@ pub struct Reader<'a, E> {
     extinction: &'a E,
     estimator: Estimator<'a, E>,
     profile: RayProfile,
+    queries: Vec<PhotonQuery>,
 }
 
 impl<'a, E: Extinction> Reader<'a, E> {
     /// A reader.
     pub fn new(scene: &'a Scene, extinction: &'a E, estimator: Estimator<'a, E>) -> Self {
-        Self { scene, extinction, estimator, profile: RayProfile::default() }
+        let (profile, queries) = (RayProfile::default(), Vec::new());
+        Self { scene, extinction, estimator, profile, queries }
     }
 
     /// Estimates at places.
@@ -52,13 +49,34 @@ impl<'a, E: Extinction> Reader<'a, E> {
         transmittance_to(&self.scene.medium, self.extinction, origin, direction, max_distance)
     }
 
-    /// Light that travels back along a ray from up to `max_distance` \[m\] ahead. `skipped` names lights whose
-    /// single scattering is computed elsewhere.
+    /// Light that travels back along a ray from up to `max_distance` \[m\] ahead.
     pub fn light_along(
         &mut self,
         ray: &Ray,
         max_distance: f64,
+        random: &mut Random,
+    ) -> RayRadiance {
+        let mut queries = std::mem::take(&mut self.queries);
+        queries.clear();
+        let mut radiance = self.direct_light(ray, max_distance, &[], 0, &mut queries, random);
+        for query in &queries {
+            let scattered = self.from_photons(query);
+            radiance.single_scatter += scattered.single;
+            radiance.multiple_scatter += scattered.multiple;
+        }
+        self.queries = queries;
+        radiance
+    }
+
+    /// The part of that light that needs no photons, and the queries, for `pixel`, that give the rest. `skipped` names
+    /// lights whose single scattering is computed elsewhere.
+    pub fn direct_light(
+        &mut self,
+        ray: &Ray,
+        max_distance: f64,
         skipped: &[usize],
+        pixel: u32,
+        queries: &mut Vec<PhotonQuery>,
         random: &mut Random,
     ) -> RayRadiance {
         let inside = self.scene.medium.bounds.intersect(ray);
@@ -81,7 +99,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
         if !self.scene.render.photons_only {
             radiance.single_scatter = self.single_scatter(ray, span, skipped, random);
         }
-        self.add_from_photons(ray, span, random, &mut radiance);
+        self.push_queries(ray, span, pixel, queries, random);
         radiance
     }
 
@@ -117,32 +135,35 @@ impl<'a, E: Extinction> Reader<'a, E> {
         near.map(|(distance, radiance)| radiance * transmittance(distance)).sum()
     }
 
-    /// Scattering from the photon map: estimates at distances that are equally spaced in transmittance.
-    fn add_from_photons(
-        &mut self,
+    /// Queries at distances that are equally spaced in transmittance.
+    fn push_queries(
+        &self,
         ray: &Ray,
         span: Span,
+        pixel: u32,
+        queries: &mut Vec<PhotonQuery>,
         random: &mut Random,
-        radiance: &mut RayRadiance,
     ) {
-        let Self { scene, extinction, estimator, profile } = self;
-        let Some(by_transmittance) = ByTransmittance::new(profile, span) else { return };
-        let samples = scene.render.march_samples;
+        let Some(by_transmittance) = ByTransmittance::new(&self.profile, span) else { return };
+        let samples = self.scene.render.march_samples;
         let count = samples as f64;
-        let towards_camera = -ray.direction;
         for stratum in 0..samples {
             let u = (stratum as f64 + uniform(random)) / count;
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = ray.at(distance);
-            let sigma_t = if E::IS_UNIFORM { extinction.sigma_t(place) } else { Rgb::ONE };
-            let weight = by_transmittance.scattering_weight(distance, sigma_t, count);
-            let scattered = estimator.in_scattered(place, towards_camera, uniform(random));
-            let weight = weight * scene.medium.albedo;
-            radiance.single_scatter += weight * scattered.single;
-            radiance.multiple_scatter += weight * scattered.multiple;
-            radiance.query_count += 1;
-            radiance.photon_count += scattered.photon_count;
-            radiance.radius_sum += scattered.radius;
+            let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
+            let weight = by_transmittance.scattering_weight(distance, sigma_t, count)
+                * self.scene.medium.albedo;
+            let (towards, turn) = (-ray.direction, uniform(random));
+            queries.push(PhotonQuery { place, towards, weight, turn, pixel });
         }
+    }
+
+    /// The answer to a query, weighted.
+    pub fn from_photons(&mut self, query: &PhotonQuery) -> InScattered {
+        let mut scattered = self.estimator.in_scattered(query.place, query.towards, query.turn);
+        scattered.single *= query.weight;
+        scattered.multiple *= query.weight;
+        scattered
     }
 }

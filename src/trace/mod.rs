@@ -120,7 +120,9 @@ impl<'a, E: Extinction> Path<'a, E> {
                 let profile = &mut self.profile;
                 let boosted =
                     self.extinction.boosted_flight(&ray, span, power, first_flight, profile);
-                self.balance.escaped += power * (1.0 - boosted.share);
+                let passing = power * (1.0 - boosted.share);
+                let escaped = self.reweigh(passing, boosted.escape_weight);
+                self.balance.escaped += escaped;
                 power *= boosted.share;
                 boosted.flight
             } else {
