@@ -14,8 +14,8 @@ const RAYS: usize = 400;
 fn largest_error(impact: f64) -> f64 {
     match impact {
         _ if impact < 0.8 => 0.01,
-        _ if impact < 0.95 => 0.03,
-        _ => 0.15,
+        _ if impact < 0.95 => 0.015,
+        _ => 0.03,
     }
 }
 

@@ -36,7 +36,7 @@ fn form_does_not_matter() {
     let hash = |name: &str, text: &str| load(folder.path(), name, text).hash;
     let expected = hash("a.toml", SCENE);
     let json = r#"{"light": [{"intensity": [1, 1, 1], "position": [0.0, 2e0, 0], "kind": "point"}],
-        "photons": {"count": 1000, "seed": 0}, "estimate": {"k": 100},
+        "photons": {"count": 1000, "seed": 0}, "estimate": {"k": 50},
         "medium": {"albedo": 0.5, "sigma_t": 1, "kind": "homogeneous", "phase": {},
                    "bounds": {"max": [1, 1, 1], "min": [-1, -1, -1]}},
         "camera": {"look_at": [0, 0, 0], "position": [0, 1, 6], "vertical_fov": 35}}"#;

@@ -172,7 +172,9 @@ fn fluence_in_a_ball_by_the_estimator() {
                     let place = random_direction(&mut random) * radius;
                     let fluence = reader.fluence(place);
                     let density = reader.power_density(place).value;
-                    assert!((fluence.value - density).abs().max_element() < 1e-9 * density.x);
+                    if radius + fluence.radius < ball_radius {
+                        assert!((fluence.value - density).abs().max_element() < 1e-9 * density.x);
+                    }
                     sums[n] += fluence.value.x / f64::from(places);
                     sums[6 + n] += fluence.radius / f64::from(places);
                 }

@@ -204,7 +204,7 @@ impl Extinction for GridExtinction {
         let center = placement.local_point(ball.center);
         let to_local = placement.world_to_local * ball.radius;
         let scale = self.density_scale / ceiling;
-        BallMoments::by_points(ball, turn, |place| {
+        BallMoments::by_points(ball, turn, 1, |place| {
             let density = self.grid.local_density((center + to_local * place).to_array());
             (scale * density).min(1.0) * (1.0 - falloff * place.length_squared())
         })
