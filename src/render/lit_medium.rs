@@ -13,8 +13,8 @@ use crate::render::{Observer, Reader, RenderError, RenderReport, Stage};
 use crate::scene::Scene;
 use crate::trace::{MapFrame, TraceSettings, trace_photons};
 
-/// Most photons that one pass may store: 2^28 take 12 GiB while the map is built.
-const MAX_STORED: usize = 1 << 28;
+/// Most photons that one pass may store: they take 15 GB while the map is built.
+const MAX_STORED: usize = 1 << 27;
 
 /// The largest radius of a query, as a share of the medium's, where the scene does not say.
 const MAX_RADIUS_SHARE: f64 = 0.25;
