@@ -1,7 +1,7 @@
 //! Single scattering: light that scattered once on its way to the camera, computed without photons.
 //!
-//! Along a ray, L = integral of T(t) sigma_s(t) p(cos) E(t) T_light(t) dt per light, with E the light's irradiance. Distances come
-//! from the ray's transmittance and, for lights that are near, half of them from equi-angular sampling, combined
+//! Along a ray, L = integral of T(t) sigma_s(t) p(cos) E(t) T_light(t) dt per light, with E the light's irradiance.
+//! Distances come from the ray's transmittance and, for lights that are near, half of them from equi-angular sampling, combined
 //! by the balance heuristic (Veach and Guibas 1995): the inverse-square peak is sampled away, and optically thick
 //! media are not left to it.
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Scene;
 use super::expected_collisions::expected_collisions;
-use super::file::{divisor_word, emission_word};
+use super::file::emission_word;
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
 use crate::medium::{MediumExtinction, Phase};
@@ -67,7 +67,7 @@ impl Plan {
             photons: scene.photons.count,
             emission: emission_word(scene.photons.emission),
             k: scene.estimate.k,
-            divisor: divisor_word(scene.estimate.divisor),
+            divisor: scene.estimate.divisor.name(),
             expected_stored,
             photon_memory_bytes: expected_stored.saturating_mul(PHOTON_BYTES),
         }

@@ -1,9 +1,10 @@
 //! Tracing: from emitted photons to photons stored at collisions.
 //!
-//! A photon flies until it collides (its first flight exactly inverted, so that strata hold; then analytically in uniform media, by delta tracking in grids), is stored with
-//! its power before the albedo, and scatters. It survives a collision with the probability that its power
-//! keeps, so that photons stay equally strong and the mean is exact. Photons are traced in fixed shares
-//! that are merged in order: the result does not depend on the number of threads.
+//! A photon flies until it collides: its first flight is exactly inverted, so that strata hold; later ones are
+//! analytic in uniform media and delta tracking in grids. At a collision it is stored with its power before the albedo,
+//! and scatters. It survives with the probability that its power keeps, so that photons stay equally strong and the
+//! mean is exact. Photons are traced in fixed shares that are merged in order: the result does not depend on the
+//! number of threads.
 
 mod balance;
 mod frame;

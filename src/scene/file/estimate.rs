@@ -42,24 +42,12 @@ const KERNELS: [(&str, Kernel); 2] =
 
 const MAX_K: u64 = 1_000_000;
 
-/// The word for a divisor in scene files.
-pub(in crate::scene) fn divisor_word(divisor: Divisor) -> &'static str {
-    match divisor {
-        Divisor::K => "k",
-        Divisor::KMinus1 => "k-1",
-        Divisor::KMinusHalf => "k-1/2",
-    }
-}
-
 fn serialize_divisor<S: Serializer>(divisor: &Divisor, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(divisor_word(*divisor))
+    serializer.serialize_str(divisor.name())
 }
 
 fn serialize_kernel<S: Serializer>(kernel: &Kernel, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(match kernel {
-        Kernel::Constant => "constant",
-        Kernel::Epanechnikov => "epanechnikov",
-    })
+    serializer.serialize_str(kernel.name())
 }
 
 impl EstimateSettings {

@@ -17,7 +17,6 @@ mod transform;
 pub use bounds::BoundsSection;
 pub use camera::CameraSection;
 pub use estimate::EstimateSettings;
-pub(super) use estimate::divisor_word;
 pub use light::LightSection;
 pub use medium::MediumSection;
 pub use phase::PhaseSection;
