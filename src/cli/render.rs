@@ -73,6 +73,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         write_report(path, &report)?;
     }
     summary.times(&report.seconds, &report.photons);
+    summary.truncated(&report.power, scene.photons.max_order);
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
     summary.written(arguments);
     Ok(())

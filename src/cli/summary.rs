@@ -3,7 +3,7 @@
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
-use super::report::{Comparison, PhotonCounts, Seconds, is_stdout};
+use super::report::{Comparison, PhotonCounts, Power, Seconds, is_stdout};
 
 /// Speaks unless told to be quiet.
 #[derive(Clone, Copy)]
@@ -38,6 +38,18 @@ impl Summary {
             photons.stored,
             rounded(speed)
         ));
+    }
+
+    /// That photons were cut off at the last order followed, if it shows.
+    pub fn truncated(self, power: &Power, max_order: u32) {
+        let sum = |rgb: [f64; 3]| rgb.iter().sum::<f64>();
+        let share = sum(power.truncated) / sum(power.emitted);
+        if share > 1e-3 {
+            let percent = 100.0 * share;
+            self.line(&format!(
+                "warning: {percent:.1} % of the power was cut at photons.max_order = {max_order}; raise it"
+            ));
+        }
     }
 
     /// How far the image is from its reference.
