@@ -3,11 +3,14 @@
 mod transport_support;
 
 use photonvdb::math::{DVec3, Ray, Stream};
+use photonvdb::medium::Bounds;
 use photonvdb::render::{LitScene, Unobserved};
 use transport_support::*;
 
 const SEEDS: u64 = 2;
 const RAYS: usize = 400;
+/// Views of one map, turned about the light.
+const VIEWS: u32 = 60;
 
 /// The largest error for a ray of impact parameter b. Near the surface, kernels reach inwards only, where the fluence is
 /// larger, and a grazing ray sees nothing else.
@@ -52,5 +55,41 @@ fn glowing_balls() {
             println!("{what}: {ratio:.5} of {exact:.6e}, {share:.2} of it multiple");
             assert!((ratio - 1.0).abs() < largest_error(impact), "{what}: {ratio}");
         }
+    }
+}
+
+/// The same from inside a medium without end, where the ray starts at `camera_distance` from the light: half a million
+/// photons, rays that start within three mean free paths.
+#[test]
+fn glow_in_a_medium_without_end() {
+    let rows = truth("glow_infinite.json");
+    for row in rows.as_array().unwrap() {
+        let albedo = number(row, "albedo");
+        let (distance, impact) = (number(row, "camera_distance"), number(row, "impact"));
+        if distance > 3.0 || ![0.5, 0.9].contains(&albedo) {
+            continue;
+        }
+        let medium = grey_fog(Bounds::Infinite, 1.0, albedo, 0.0);
+        let mut scene = scene(medium, one_watt(DVec3::ZERO), 500_000);
+        scene.render.light_samples = 256;
+        scene.render.march_samples = 256;
+        let along = (distance * distance - impact * impact).sqrt();
+        let ray = Ray::new(DVec3::new(impact, 0.0, -along), DVec3::Z);
+        let (mut single, mut total) = (0.0, 0.0);
+        let lit = LitScene::prepare(&scene, &Unobserved).unwrap();
+        let mut reader = lit.reader();
+        let mut random = Stream::Experiment.random(0, 0);
+        for _ in 0..VIEWS {
+            let turn = glam::DQuat::from_rotation_arc(DVec3::Z, random_direction(&mut random));
+            let ray = Ray::new(turn * ray.origin, turn * ray.direction);
+            let seen = reader.radiance(&ray, f64::INFINITY, &mut random);
+            single += seen.single_scatter.x / f64::from(VIEWS);
+            total += (seen.single_scatter + seen.multiple_scatter).x / f64::from(VIEWS);
+        }
+        let exact = number(row, "L_total");
+        let what = format!("albedo {albedo}, from {distance}, impact {impact}");
+        println!("{what}: {:.5}, single {:.5}", total / exact, single / number(row, "L_single"));
+        assert!((single / number(row, "L_single") - 1.0).abs() < 1e-3, "{what}: single");
+        assert!((total / exact - 1.0).abs() < 0.015, "{what}: {}", total / exact);
     }
 }

@@ -95,7 +95,7 @@ impl EquiAngular {
         let to_position = position - ray.origin;
         let delta = to_position.dot(ray.direction);
         // A ray through the light itself would see it without bound: the floor is far below any pixel.
-        let floor = 1e-12 * (span.length().min(1e300) + delta.abs()) + f64::MIN_POSITIVE;
+        let floor = 1e-12 * to_position.length() + f64::MIN_POSITIVE;
         let offset = (to_position - ray.direction * delta).length().max(floor);
         let (a, b) = (span.start - delta, span.end - delta);
         let first = a.atan2(offset);
