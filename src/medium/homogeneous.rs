@@ -5,10 +5,8 @@
 //! channel is weighted by its own density over the mixture's: the balance heuristic over channels, which is
 //! unbiased and never weighs by more than 1 / q_c.
 
-use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp, uniform};
-use crate::medium::{
-    BallMoments, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, RayProfile,
-};
+use crate::math::{DVec3, Random, Ray, Rgb, Span, exp, uniform};
+use crate::medium::{BoostedFlight, BoostedQuantile, Extinction, Flight, RayProfile};
 
 /// The same sigma_t everywhere and in every channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,17 +46,6 @@ impl Extinction for UniformExtinction {
 
     fn profile(&self, _ray: &Ray, span: Span, profile: &mut RayProfile) {
         profile.set_uniform(span, Rgb::splat(self.sigma_t));
-    }
-
-    fn ball_moments(
-        &self,
-        bounds: &Bounds,
-        ball: Ball,
-        _ceiling: f64,
-        turn: f64,
-        falloff: f64,
-    ) -> BallMoments {
-        BallMoments::inside(bounds, ball, turn, falloff)
     }
 }
 
@@ -124,17 +111,6 @@ impl Extinction for ChromaticExtinction {
 
     fn profile(&self, _ray: &Ray, span: Span, profile: &mut RayProfile) {
         profile.set_uniform(span, self.sigma_t);
-    }
-
-    fn ball_moments(
-        &self,
-        bounds: &Bounds,
-        ball: Ball,
-        _ceiling: f64,
-        turn: f64,
-        falloff: f64,
-    ) -> BallMoments {
-        BallMoments::inside(bounds, ball, turn, falloff)
     }
 }
 

@@ -107,10 +107,12 @@ pub trait Extinction: Sync {
         &self,
         bounds: &Bounds,
         ball: Ball,
-        ceiling: f64,
+        _ceiling: f64,
         turn: f64,
         falloff: f64,
-    ) -> BallMoments;
+    ) -> BallMoments {
+        BallMoments::inside(bounds, ball, turn, falloff)
+    }
 }
 
 /// A quantile of the first flight, and how many times likelier than by nature it should collide.
