@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExtraLayers;
+use photonvdb::medium::vdb::Limits;
 use photonvdb::scene::Overrides;
 
+use super::bytes::parse_bytes;
 use super::count::{parse_count, parse_resolution};
 
 const EXAMPLES: &str = "\
@@ -121,9 +123,37 @@ pub struct RenderArguments {
     #[arg(long, value_name = "OUT.png")]
     pub preview: Option<PathBuf>,
 
+    /// Reading volumes
+    #[command(flatten)]
+    pub volume: VolumeArguments,
+
+    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
+    #[arg(long)]
+    pub strict: bool,
+
+    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
+    #[arg(long)]
+    pub sdf_to_fog: bool,
+
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// What reading a volume may cost.
+#[derive(Args, Debug)]
+pub struct VolumeArguments {
+    /// Memory that reading a volume may take, like 512MiB or 20GB [default: 8GiB]
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub max_volume_memory: Option<u64>,
+}
+
+impl VolumeArguments {
+    /// The limit given, or the default.
+    pub fn limits(&self) -> Limits {
+        let default = Limits::default();
+        Limits { max_bytes: self.max_volume_memory.unwrap_or(default.max_bytes) }
+    }
 }
 
 /// Layers written on request.
@@ -146,6 +176,10 @@ pub struct InspectArguments {
     /// Machine-readable, on stdout
     #[arg(long)]
     pub json: bool,
+
+    /// Reading volumes
+    #[command(flatten)]
+    pub volume: VolumeArguments,
 }
 
 impl RenderArguments {
@@ -159,6 +193,9 @@ impl RenderArguments {
             divisor: self.divisor.clone(),
             resolution: self.resolution,
             photons_only: self.photons_only.then_some(true),
+            sdf_to_fog: self.sdf_to_fog.then_some(true),
+            max_volume_memory: self.volume.max_volume_memory,
+            strict: self.strict,
         }
     }
 

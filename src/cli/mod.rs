@@ -5,6 +5,7 @@
 //! Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.
 
 mod args;
+mod bytes;
 mod count;
 mod error;
 mod inspect;

@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
+use super::environment;
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
-use super::{environment, volume};
+use super::volume::{DensityVolume, VolumeRules};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
 };
@@ -16,6 +17,7 @@ use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinc
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
+    rules: &VolumeRules,
     warnings: &mut Vec<String>,
 ) -> Result<Medium, Problem> {
     match section {
@@ -25,14 +27,23 @@ pub(super) fn medium(
             albedo: *albedo,
             phase: phase.phase(),
         }),
-        MediumSection::Vdb { file, density, density_scale, albedo, phase, transform } => {
-            let (bounds, extinction) = volume::read(
-                &directory.join(file),
-                density.as_deref(),
-                *density_scale,
-                transform.affine(),
-                warnings,
-            )?;
+        MediumSection::Vdb {
+            file,
+            density,
+            density_scale,
+            sdf_to_fog,
+            albedo,
+            phase,
+            transform,
+        } => {
+            let volume = DensityVolume {
+                file: &directory.join(file),
+                grid: density.as_deref(),
+                sdf_to_fog: *sdf_to_fog,
+                density_scale: *density_scale,
+                transform: transform.affine(),
+            };
+            let (bounds, extinction) = volume.read(rules, warnings)?;
             Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
         }
     }

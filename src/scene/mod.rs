@@ -34,6 +34,7 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::medium::Medium;
 use error::Problem;
+use volume::VolumeRules;
 
 /// A validated scene. Nothing in it can be out of range.
 #[derive(Debug)]
@@ -73,12 +74,13 @@ impl Scene {
     pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
         let (file, tree) = SceneFile::load_tree(path, overrides)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::build(&file, directory).map_err(|problem| problem.locate(path, &tree))
+        Self::build(&file, directory, &overrides.volume_rules())
+            .map_err(|problem| problem.locate(path, &tree))
     }
 
-    fn build(file: &SceneFile, directory: &Path) -> Result<Self, Problem> {
+    fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
         let mut warnings = Vec::new();
-        let medium = build::medium(&file.medium, directory, &mut warnings)?;
+        let medium = build::medium(&file.medium, directory, rules, &mut warnings)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))

@@ -5,47 +5,122 @@ use std::path::Path;
 use super::error::Problem;
 use crate::math::DAffine3;
 use crate::medium::grid::DensityGrid;
-use crate::medium::vdb::{Limits, VdbFile, VolumeSource, find_density, sanitize_density};
+use crate::medium::vdb::{
+    GridSummary, Limits, SparseGrid, VdbError, VdbFile, VolumeSource, find_density,
+    find_density_or_level_set, fog_of_level_set, sanitize_density,
+};
 use crate::medium::{Bounds, GridExtinction, MediumExtinction, UniformExtinction};
 
-/// The extinction `density_scale * density` \[1/m\] of a grid, and where it is. `density` names the grid;
-/// `transform` leads from the file's world to the scene's. Pushes a sentence on `warnings` for what was mended.
-pub(super) fn read(
-    file: &Path,
-    density: Option<&str>,
-    density_scale: f64,
-    transform: DAffine3,
+/// What reading volumes may cost and must find.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VolumeRules {
+    /// Memory allowed.
+    pub limits: Limits,
+    /// Whether a value that cannot be a density is an error.
+    pub strict: bool,
+}
+
+/// A density grid of a file, and how a scene uses it: sigma_t = density_scale * density \[1/m\].
+pub(super) struct DensityVolume<'a> {
+    /// The VDB file.
+    pub file: &'a Path,
+    /// Name of the grid, if the scene gives one.
+    pub grid: Option<&'a str>,
+    /// Whether a level set is filled with fog.
+    pub sdf_to_fog: bool,
+    /// Extinction of density 1 \[1/m\].
+    pub density_scale: f64,
+    /// From the file's world to the scene's.
+    pub transform: DAffine3,
+}
+
+impl DensityVolume<'_> {
+    /// Reads the extinction and where it is. Pushes a sentence on `warnings` for whatever was mended.
+    pub(super) fn read(
+        &self,
+        rules: &VolumeRules,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Bounds, MediumExtinction), Problem> {
+        let source = VdbFile::open(self.file).map_err(|error| in_file(&error))?;
+        let index = self.find(&source)?;
+        let name = format!("grid {:?} of {}", source.grids()[index].unique_name, source.name());
+        let stored = source.load_scalar(index, &rules.limits).map_err(|error| in_grid(&error))?;
+        let mut sparse = self.density(stored, &source.grids()[index], &name, warnings);
+        mend(&mut sparse, &name, rules.strict, warnings)?;
+        if let Some(damage) = source.damage() {
+            let name = source.name();
+            warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
+        }
+
+        let index_to_world = self.transform * sparse.index_to_world;
+        let grid = DensityGrid::from_sparse(&sparse);
+        drop(sparse);
+        if grid.statistics().max_density <= 0.0 {
+            let text = format!("{name} is empty: no density is above 0");
+            return Err(Problem::new("medium.density", text));
+        }
+        place(grid, index_to_world, self.density_scale)
+    }
+
+    fn find(&self, source: &VdbFile) -> Result<usize, Problem> {
+        let find = if self.sdf_to_fog { find_density_or_level_set } else { find_density };
+        find(source, self.grid.unwrap_or("density"), self.grid.is_some())
+            .map_err(|error| in_grid(&error))
+    }
+
+    /// The grid's densities: what it holds, or the fog inside it.
+    fn density(
+        &self,
+        stored: SparseGrid<f32>,
+        summary: &GridSummary,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> SparseGrid<f32> {
+        if !self.sdf_to_fog {
+            return stored;
+        }
+        // Not every program names the class; a density is 0 far away, a distance is not.
+        let is_unnamed_level_set = summary.class == "unknown" && stored.background > 0.0;
+        if summary.is_level_set() || is_unnamed_level_set {
+            return fog_of_level_set(stored);
+        }
+        warnings.push(format!("{name} is no level set and is used as it is"));
+        stored
+    }
+}
+
+fn in_file(error: &VdbError) -> Problem {
+    Problem::new("medium.file", error.to_string())
+}
+
+fn in_grid(error: &VdbError) -> Problem {
+    Problem::new("medium.density", error.to_string())
+}
+
+/// Sets to 0 what cannot be a density and says so; an error when `strict`.
+fn mend(
+    grid: &mut SparseGrid<f32>,
+    name: &str,
+    strict: bool,
     warnings: &mut Vec<String>,
-) -> Result<(Bounds, MediumExtinction), Problem> {
-    let source = VdbFile::open(file).map_err(|e| Problem::new("medium.file", e.to_string()))?;
-    let in_grid = |text: String| Problem::new("medium.density", text);
-    let index = find_density(&source, density.unwrap_or("density"), density.is_some())
-        .map_err(|error| in_grid(error.to_string()))?;
-    let name = format!("grid {:?} of {}", source.grids()[index].unique_name, file.display());
-
-    let limits = Limits::default();
-    let mut sparse = source.load_scalar(index, &limits).map_err(|e| in_grid(e.to_string()))?;
-    let mended = sanitize_density(&mut sparse);
-    if mended.total() > 0 {
-        warnings.push(format!(
-            "{name}: {} values are no densities and count as 0 ({} NaN, {} infinite, {} negative)",
-            mended.total(),
-            mended.nan,
-            mended.infinite,
-            mended.negative,
-        ));
+) -> Result<(), Problem> {
+    let mended = sanitize_density(grid);
+    if mended.total() == 0 {
+        return Ok(());
     }
-    if let Some(damage) = source.damage() {
-        warnings.push(format!("{} is damaged beyond its readable grids: {damage}", file.display()));
+    let found = format!(
+        "{name}: {} values are no densities ({} NaN, {} infinite, {} negative)",
+        mended.total(),
+        mended.nan,
+        mended.infinite,
+        mended.negative,
+    );
+    if strict {
+        let text = format!("{found}; mend the file, or leave out --strict to count them as 0");
+        return Err(Problem::new("medium.density", text));
     }
-
-    let index_to_world = transform * sparse.index_to_world;
-    let grid = DensityGrid::from_sparse(&sparse);
-    drop(sparse);
-    if grid.statistics().max_density <= 0.0 {
-        return Err(in_grid(format!("{name} is empty: no density is above 0")));
-    }
-    place(grid, index_to_world, density_scale)
+    warnings.push(format!("{found}; they count as 0"));
+    Ok(())
 }
 
 /// A grid in the world. At scale 0 all that is left of it is its bounds.

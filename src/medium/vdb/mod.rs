@@ -20,6 +20,7 @@ mod error;
 mod fault;
 mod file;
 mod find;
+mod fog;
 mod listing;
 mod load;
 mod metadata;
@@ -32,7 +33,8 @@ mod value;
 
 pub use error::VdbError;
 pub use file::VdbFile;
-pub use find::find_density;
+pub use find::{find_density, find_density_or_level_set};
+pub use fog::fog_of_level_set;
 pub use sanitize::{SanitizeCount, sanitize_density};
 pub use sparse::{SparseGrid, Tile};
 pub use summary::{GridSummary, IndexBox};

@@ -32,6 +32,7 @@ pub enum MediumSection {
     /// | `file` | path | | required | | an OpenVDB file, relative to the scene file |
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
+    /// | `sdf_to_fog` | boolean | | false | | fill a level set with fog: density 0 on its surface, 1 at depth |
     /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
     /// | `phase` | table | | isotropic | | see [`PhaseSection`] |
     /// | `transform` | table | | identity | | see [`TransformSection`] |
@@ -43,6 +44,7 @@ pub enum MediumSection {
         #[serde(skip_serializing_if = "Option::is_none")]
         density: Option<String>,
         density_scale: f64,
+        sdf_to_fog: bool,
         albedo: Rgb,
         phase: PhaseSection,
         transform: TransformSection,
@@ -54,7 +56,10 @@ const EMISSION_KEYS: [&str; 4] =
 
 const KINDS: [(&str, &[&str]); 2] = [
     ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
-    ("vdb", &["kind", "file", "density", "density_scale", "albedo", "phase", "transform"]),
+    (
+        "vdb",
+        &["kind", "file", "density", "density_scale", "sdf_to_fog", "albedo", "phase", "transform"],
+    ),
 ];
 
 impl MediumSection {
@@ -87,6 +92,7 @@ impl MediumSection {
             file: table.require::<String>("file")?.into(),
             density: table.get("density")?,
             density_scale,
+            sdf_to_fog: table.get_or("sdf_to_fog", false)?,
             albedo: read_albedo(table)?,
             phase: PhaseSection::read(table)?,
             transform: TransformSection::read(table)?,
