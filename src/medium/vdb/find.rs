@@ -112,5 +112,10 @@ fn present(grids: &[GridSummary]) -> String {
     if grids.len() > NAMED_IN_MESSAGE {
         words.push(format!("and {} more", grids.len() - NAMED_IN_MESSAGE));
     }
-    format!("name one it holds: {}", words.join(", "))
+    let fill = if grids.iter().any(GridSummary::is_level_set) {
+        "; --sdf-to-fog fills a level set with fog"
+    } else {
+        ""
+    };
+    format!("name one it holds: {}{fill}", words.join(", "))
 }
