@@ -17,6 +17,7 @@
 //! | [`map`] | photons | [`PhotonMap`](map::PhotonMap): a k-d tree over their places |
 //! | [`estimate`] | the map | [`Estimate`](estimate::Estimate): power density, fluence; light scattered towards a direction |
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
+//! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
 //! [`medium`] knows how light is attenuated and scattered, and reads OpenVDB files ([`medium::vdb`]); [`light`] knows
@@ -61,6 +62,7 @@ pub mod camera;
 pub mod emission;
 pub mod estimate;
 pub mod film;
+pub mod lab;
 pub mod light;
 pub mod map;
 pub mod math;
