@@ -8,6 +8,7 @@ use photonvdb::film::ExtraLayers;
 use photonvdb::medium::vdb::Limits;
 use photonvdb::scene::Overrides;
 
+use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
 use super::count::{parse_count, parse_resolution};
 
@@ -17,6 +18,8 @@ Examples:
       Render a scene and look at it.
   photonvdb render cloud.toml -o cloud.exr --photons 1e7 --passes 16
       Sixteen independent passes of ten million photons, averaged.
+  photonvdb bias 3d-random 3d-jittered --k 10,50,100
+      How far k-nearest estimates are off, exact and measured.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
@@ -56,6 +59,8 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to OpenEXR
     Render(Box<RenderArguments>),
+    /// Measure the bias of density estimates on models whose truth is known
+    Bias(Box<BiasArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use photonvdb::film::FilmError;
+use photonvdb::lab::LabError;
 use photonvdb::medium::vdb::VdbError;
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
@@ -20,6 +21,14 @@ pub enum CliError {
     Vdb(#[from] VdbError),
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    Lab(#[from] LabError),
+    #[error(
+        "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
+    )]
+    UnknownModel { name: String, nearest: &'static str },
+    #[error("cannot make the directory {path}: {source}", path = path.display())]
+    Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("cannot start {threads} threads: {source}")]

@@ -26,3 +26,39 @@ pub(super) fn unit_ball(dimension: u32) -> f64 {
         _ => 4.0 / 3.0 * PI,
     }
 }
+
+/// What the law predicts of a jittered grid, queries at random.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JitterLaw {
+    dimension: f64,
+    /// c_d: mean over the surface's directions of E|n (U - U')| / 2 for two points of a cell, times the surface of
+    /// the ball of measure 1.
+    surface: f64,
+}
+
+impl JitterLaw {
+    pub(super) fn new(dimension: u32) -> Self {
+        // 1/3 is exact; the others from the mean distance of two points of the unit square and cube, 0.5214054331647
+        // and 0.6617071822672: 2 D_2 / sqrt(pi) and pi (3 / (4 pi))^(2/3) D_3.
+        let surface = match dimension {
+            1 => 1.0 / 3.0,
+            2 => 0.588_343_028_393_482,
+            _ => 0.799_999_990_297_198,
+        };
+        Self { dimension: f64::from(dimension), surface }
+    }
+
+    /// E\[k/u_(k)\] - 1.
+    pub(super) fn bias(&self, k: f64) -> f64 {
+        let d = self.dimension;
+        let g = (d + 1.0) / d * self.surface * k.powf(-1.0 / d);
+        k / (k - 0.5 - 0.5 * g) - 1.0
+    }
+
+    /// Var\[k/u_(k)\] = V(k) / k^2; on a line the law is exact with V - 1/12.
+    pub(super) fn variance(&self, k: f64) -> f64 {
+        let count = self.surface * k.powf((self.dimension - 1.0) / self.dimension);
+        let correction = if self.dimension == 1.0 { 1.0 / 12.0 } else { 0.0 };
+        (count - correction) / (k * k)
+    }
+}

@@ -12,6 +12,7 @@ mod constant;
 mod csv;
 mod error;
 mod experiment;
+pub mod figures;
 mod jitter;
 mod model;
 mod plot;

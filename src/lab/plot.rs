@@ -42,6 +42,9 @@ pub struct Chart {
     pub series: Vec<Series>,
 }
 
+/// Least and greatest value of an axis.
+type Range = (f64, f64);
+
 const SIZE: (u32, u32) = (900, 560);
 const MARGIN: u32 = 16;
 const FONT: &str = "sans-serif";
@@ -72,22 +75,22 @@ impl Chart {
         let (x, y) = self.ranges().ok_or_else(|| failed(&"it has no finite values"))?;
         let mut svg = String::new();
         let drawn = match (self.x_scale, self.y_scale) {
-            (Scale::Linear, Scale::Linear) => self.draw(&mut svg, x.0..x.1, y.0..y.1),
+            (Scale::Linear, Scale::Linear) => self.draw(&mut svg, (x, y), x.0..x.1, y.0..y.1),
             (Scale::Linear, Scale::Logarithmic) => {
-                self.draw(&mut svg, x.0..x.1, (y.0..y.1).log_scale())
+                self.draw(&mut svg, (x, y), x.0..x.1, (y.0..y.1).log_scale())
             }
             (Scale::Logarithmic, Scale::Linear) => {
-                self.draw(&mut svg, (x.0..x.1).log_scale(), y.0..y.1)
+                self.draw(&mut svg, (x, y), (x.0..x.1).log_scale(), y.0..y.1)
             }
             (Scale::Logarithmic, Scale::Logarithmic) => {
-                self.draw(&mut svg, (x.0..x.1).log_scale(), (y.0..y.1).log_scale())
+                self.draw(&mut svg, (x, y), (x.0..x.1).log_scale(), (y.0..y.1).log_scale())
             }
         };
         drawn.map_err(|error| failed(&error))?;
         Ok(svg)
     }
 
-    fn draw<X, Y>(&self, svg: &mut String, x: X, y: Y) -> Result<(), String>
+    fn draw<X, Y>(&self, svg: &mut String, ranges: (Range, Range), x: X, y: Y) -> Result<(), String>
     where
         X: AsRangedCoord<Value = f64>,
         Y: AsRangedCoord<Value = f64>,
@@ -111,8 +114,8 @@ impl Chart {
             .label_style((FONT, 14))
             .axis_desc_style((FONT, 16))
             .light_line_style(TRANSPARENT)
-            .x_label_formatter(&|value| short(*value))
-            .y_label_formatter(&|value| short(*value))
+            .x_label_formatter(&|value| short(*value, ranges.0))
+            .y_label_formatter(&|value| short(*value, ranges.1))
             .draw()
             .map_err(|error| text(&error))?;
         for (series, &color) in self.series.iter().zip(COLORS.iter().cycle()) {
@@ -160,7 +163,7 @@ impl Chart {
     }
 
     /// The least and greatest x and y, with some room.
-    fn ranges(&self) -> Option<((f64, f64), (f64, f64))> {
+    fn ranges(&self) -> Option<(Range, Range)> {
         let lines = self.series.iter().flat_map(|series| series.line.iter().copied());
         let points = self.series.iter().flat_map(|series| {
             series.points.iter().flat_map(|&(x, y, error)| [(x, y - error), (x, y), (x, y + error)])
@@ -172,7 +175,7 @@ impl Chart {
 }
 
 /// Least and greatest of the values, with some room beyond.
-fn range(values: &[f64], scale: Scale) -> Option<(f64, f64)> {
+fn range(values: &[f64], scale: Scale) -> Option<Range> {
     let least = values.iter().copied().reduce(f64::min)?;
     let greatest = values.iter().copied().reduce(f64::max)?;
     Some(match scale {
@@ -184,8 +187,11 @@ fn range(values: &[f64], scale: Scale) -> Option<(f64, f64)> {
     })
 }
 
-/// A number as people write it, without trailing zeros.
-fn short(value: f64) -> String {
+/// A number on an axis of this range as people write it, without trailing zeros.
+fn short(value: f64, (least, greatest): (f64, f64)) -> String {
+    // Rounding leaves a trace of the steps that lead to 0.
+    let is_zero = least <= 0.0 && value.abs() < 1e-9 * (greatest - least);
+    let value = if is_zero { 0.0 } else { value };
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     let is_plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
     if is_plain { rounded.to_string() } else { format!("{rounded:e}") }

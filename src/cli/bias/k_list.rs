@@ -1,6 +1,6 @@
 //! Lists of k as people write them: `2..200`, `10,50,100`, `2..20,50,1e6`.
 
-use super::count::parse_count;
+use crate::cli::count::parse_count;
 
 /// More k than a table has use for.
 const MOST: u64 = 1_000_000;
@@ -10,7 +10,9 @@ pub fn parse_k_list(text: &str) -> Result<KList, String> {
     let mut ks = Vec::new();
     for part in text.split(',') {
         let (first, last) = match part.split_once("..") {
-            Some((first, last)) => (parse_count(first)?, parse_count(last.trim_start_matches('='))?),
+            Some((first, last)) => {
+                (parse_count(first)?, parse_count(last.trim_start_matches('='))?)
+            }
             None => {
                 let k = parse_count(part)?;
                 (k, k)
