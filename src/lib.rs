@@ -60,6 +60,7 @@
 pub mod camera;
 pub mod emission;
 pub mod estimate;
+pub mod files;
 pub mod film;
 pub mod light;
 pub mod map;

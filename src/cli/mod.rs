@@ -5,6 +5,7 @@
 //! Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.
 
 mod args;
+mod convert;
 mod count;
 mod error;
 mod inspect;
@@ -33,6 +34,7 @@ pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
     };
     match finished {
         Ok(()) => ExitCode::SUCCESS,

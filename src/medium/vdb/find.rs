@@ -21,21 +21,28 @@ pub fn find_density(
     explicit: bool,
 ) -> Result<usize, VdbError> {
     let grids = source.grids();
-    let named = grids
-        .iter()
-        .position(|grid| grid.name == name)
-        .or_else(|| grids.iter().position(|grid| grid.unique_name == name));
-    let found = match named {
-        None if !explicit => only_float(grids),
-        named => named,
+    let index = match find_grid(source, name) {
+        Err(error) if !explicit => only_float(grids).ok_or(error)?,
+        named => named?,
     };
-    let index = found.ok_or_else(|| VdbError::NoSuchGrid {
+    check_density(source, &grids[index])?;
+    Ok(index)
+}
+
+/// The grid of that `name`, whatever it holds. A name that several grids have means the first of
+/// them; `name[1]` is the second.
+///
+/// # Errors
+/// When there is no such grid, naming those there are.
+pub fn find_grid(source: &dyn VolumeSource, name: &str) -> Result<usize, VdbError> {
+    let grids = source.grids();
+    let named = grids.iter().position(|grid| grid.name == name);
+    let found = named.or_else(|| grids.iter().position(|grid| grid.unique_name == name));
+    found.ok_or_else(|| VdbError::NoSuchGrid {
         file: source.name().to_owned(),
         grid: name.to_owned(),
         present: present(grids),
-    })?;
-    check_density(source, &grids[index])?;
-    Ok(index)
+    })
 }
 
 fn check_density(source: &dyn VolumeSource, grid: &GridSummary) -> Result<(), VdbError> {
