@@ -124,3 +124,105 @@ fn box_mask(origin: [i32; 3], inside: IndexBox) -> [u64; 8] {
         bits.fold(0, |mask, bit| mask | 1 << bit)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DAffine3;
+
+    fn grid(tiles: &[([i32; 3], u32, bool)]) -> SparseGrid<f32> {
+        SparseGrid {
+            background: -1.0,
+            index_to_world: DAffine3::IDENTITY,
+            leaves: vec![[8, 0, -8]],
+            masks: vec![[u64::MAX / 3; 8]],
+            values: (0..512).map(|offset| offset as f32).collect(),
+            tiles: tiles
+                .iter()
+                .map(|&(origin, dim, active)| Tile { origin, dim, value: dim as f32, active })
+                .collect(),
+        }
+    }
+
+    fn holds(bounds: IndexBox, voxel: [i32; 3]) -> bool {
+        IndexBox::cube(voxel, 1).intersection(bounds).is_some()
+    }
+
+    /// Value and state of a voxel; it must not be stored twice.
+    fn at(grid: &SparseGrid<f32>, voxel: [i32; 3]) -> (f32, bool) {
+        let leaves = grid.leaves.iter().enumerate();
+        let leaves = leaves.filter(|(_, origin)| holds(IndexBox::cube(**origin, 8), voxel));
+        let leaves = leaves.map(|(leaf, origin)| {
+            let place: [i32; 3] = std::array::from_fn(|axis| voxel[axis] - origin[axis]);
+            let offset = (place[0] << 6 | place[1] << 3 | place[2]) as usize;
+            let active = grid.masks[leaf][offset >> 6] >> (offset & 63) & 1 == 1;
+            (grid.values[LEAF_LEN * leaf + offset], active)
+        });
+        let tiles = grid.tiles.iter();
+        let tiles = tiles.filter(|t| holds(IndexBox::cube(t.origin, t.dim as i32), voxel));
+        let found: Vec<_> = leaves.chain(tiles.map(|tile| (tile.value, tile.active))).collect();
+        assert!(found.len() <= 1, "{voxel:?} is stored {} times", found.len());
+        found.first().copied().unwrap_or((grid.background, false))
+    }
+
+    #[test]
+    fn voxels_inside_stay_and_those_outside_are_background() {
+        let source = grid(&[
+            ([0, 0, 0], 8, true),
+            ([0, 8, 0], 8, false),
+            ([-128, 0, 0], 128, true),
+            ([-4096, -4096, 0], 4096, true),
+            ([4096, 0, 0], 4096, false),
+        ]);
+        for bounds in [
+            IndexBox { min: [-3, -2, -4], max: [12, 9, 3] },
+            IndexBox { min: [-60, -60, 17], max: [4106, 3, 19] },
+            IndexBox { min: [-128, 0, 0], max: [-1, 127, 127] },
+            IndexBox { min: [i32::MIN; 3], max: [i32::MAX; 3] },
+            IndexBox { min: [i32::MIN, -5, 5], max: [-4000, 5, 5] },
+        ] {
+            let mut cropped = source.clone();
+            crop(&mut cropped, bounds, &Limits::default()).unwrap();
+            let ends = |axis: usize| {
+                let near = [bounds.min[axis], bounds.max[axis], 0, 8, -128, 127, 4096];
+                near.into_iter().flat_map(|end: i32| (-1..=1).map(move |by| end.saturating_add(by)))
+            };
+            for voxel in
+                ends(0).flat_map(|x| ends(1).flat_map(move |y| ends(2).map(move |z| [x, y, z])))
+            {
+                let expected =
+                    if holds(bounds, voxel) { at(&source, voxel) } else { (-1.0, false) };
+                assert_eq!(at(&cropped, voxel), expected, "{voxel:?} of {bounds:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_lies_inside_is_not_touched() {
+        let source = grid(&[([-4096, -4096, 0], 4096, true), ([-128, 0, 0], 128, false)]);
+        let mut cropped = source.clone();
+        let bounds = IndexBox { min: [-4096; 3], max: [4095; 3] };
+        crop(&mut cropped, bounds, &Limits::default()).unwrap();
+        assert_eq!((cropped.leaves, cropped.masks), (source.leaves, source.masks));
+        assert_eq!(cropped.values, source.values);
+        assert_eq!(cropped.tiles.len(), 2);
+    }
+
+    #[test]
+    fn a_tile_falls_into_the_largest_pieces() {
+        let mut cropped = grid(&[([0, 0, 0], 4096, true)]);
+        crop(&mut cropped, IndexBox { min: [0; 3], max: [135, 127, 127] }, &Limits::default())
+            .unwrap();
+        let count = |dim| cropped.tiles.iter().filter(|tile| tile.dim == dim).count();
+        assert_eq!([count(128), count(8), cropped.tiles.len()], [1, 256, 257]);
+    }
+
+    #[test]
+    fn pieces_beyond_the_limit_are_an_error() {
+        let limits = Limits { max_bytes: 1 << 20 };
+        let mut cropped = grid(&[([0, 0, 0], 4096, true)]);
+        let bounds = IndexBox { min: [1; 3], max: [4094; 3] };
+        let error = crop(&mut cropped, bounds, &limits).unwrap_err();
+        assert!(error.to_string().contains("1.0 MiB"), "{error}");
+    }
+}

@@ -78,7 +78,8 @@ mod tests {
         let chunk = Chunk::read(&mut cursor, codec, values.len()).unwrap();
         assert_eq!(cursor.position(), out.len());
         assert_eq!(chunk.unpack(values.len(), &mut Scratch::default()).unwrap(), values);
-        (out, !matches!(chunk, Chunk::Raw(_)))
+        let is_packed = !matches!(chunk, Chunk::Raw(_));
+        (out, is_packed)
     }
 
     #[test]
