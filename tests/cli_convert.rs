@@ -96,9 +96,9 @@ fn what_cannot_be_converted_is_skipped_or_refused() {
     let work = Workspace::new();
     let run = convert(&work, "density_after_points.vdb", "-o out.vdb");
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    assert!(run.stderr.contains("skipping grid \"a_points\": it holds points"), "{}", run.stderr);
+    assert!(run.stderr.contains("skipping grid \"points\": it holds points"), "{}", run.stderr);
     assert_eq!(grids(&work, "out.vdb").len(), 1);
-    convert(&work, "density_after_points.vdb", "-o new.vdb --grid a_points")
+    convert(&work, "density_after_points.vdb", "-o new.vdb --grid points")
         .fails_with("it holds points");
     let nothing = convert(&work, "type_bool.vdb", "-o new.vdb");
     assert_eq!(nothing.code, Some(2));

