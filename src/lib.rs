@@ -19,7 +19,7 @@
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
-//! [`medium`] knows how light is attenuated and scattered, and reads OpenVDB files ([`medium::vdb`]); [`light`] knows
+//! [`medium`] knows how light is attenuated and scattered, and reads and writes OpenVDB files ([`medium::vdb`]); [`light`] knows
 //! how strongly a place is lit; [`camera`] makes rays; [`math`] holds what all share.
 //!
 //! # From a scene file to pixels
