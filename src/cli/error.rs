@@ -3,9 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
+use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
 use photonvdb::lab::LabError;
-use photonvdb::medium::vdb::VdbError;
+use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
 use thiserror::Error;
@@ -19,6 +20,16 @@ pub enum CliError {
     Film(#[from] FilmError),
     #[error(transparent)]
     Vdb(#[from] VdbError),
+    #[error(transparent)]
+    VdbWrite(#[from] VdbWriteError),
+    #[error(transparent)]
+    Write(#[from] WriteFailure),
+    #[error("grid \"{grid}\" of {path} cannot be cropped so: {source}", path = path.display())]
+    Crop { path: PathBuf, grid: String, source: CropError },
+    #[error("{path} has no grid that can be converted", path = path.display())]
+    NothingToConvert { path: PathBuf },
+    #[error("--rename is for one grid and {count} are written; choose one with --grid")]
+    RenameMany { count: usize },
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error(transparent)]

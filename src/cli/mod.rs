@@ -7,6 +7,7 @@
 mod args;
 mod bias;
 mod bytes;
+mod convert;
 mod count;
 mod error;
 mod inspect;
@@ -36,6 +37,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
     };
     match finished {
         Ok(()) => ExitCode::SUCCESS,

@@ -50,21 +50,28 @@ fn find_scalar(
     could_be_meant: impl Fn(&GridSummary) -> bool,
 ) -> Result<usize, VdbError> {
     let grids = source.grids();
-    let named = grids
-        .iter()
-        .position(|grid| grid.name == name)
-        .or_else(|| grids.iter().position(|grid| grid.unique_name == name));
-    let found = match named {
-        None if !explicit => only(grids, could_be_meant),
-        named => named,
+    let index = match find_grid(source, name) {
+        Err(error) if !explicit => only(grids, could_be_meant).ok_or(error)?,
+        named => named?,
     };
-    let index = found.ok_or_else(|| VdbError::NoSuchGrid {
+    check_scalar(source, &grids[index])?;
+    Ok(index)
+}
+
+/// The grid of that `name`, whatever it holds. A name that several grids have means the first of
+/// them; `name[1]` is the second.
+///
+/// # Errors
+/// When there is no such grid, naming those there are.
+pub fn find_grid(source: &dyn VolumeSource, name: &str) -> Result<usize, VdbError> {
+    let grids = source.grids();
+    let named = grids.iter().position(|grid| grid.name == name);
+    let found = named.or_else(|| grids.iter().position(|grid| grid.unique_name == name));
+    found.ok_or_else(|| VdbError::NoSuchGrid {
         file: source.name().to_owned(),
         grid: name.to_owned(),
         present: present(grids),
-    })?;
-    check_scalar(source, &grids[index])?;
-    Ok(index)
+    })
 }
 
 fn check_scalar(source: &dyn VolumeSource, grid: &GridSummary) -> Result<(), VdbError> {
