@@ -8,17 +8,23 @@ mod active_voxels;
 mod block_walk;
 mod brick_atlas;
 mod brick_index;
+mod brick_plan;
+mod budget;
 mod cell_walk;
 pub(super) mod cubic;
 mod delta_tracking;
 mod density_grid;
 mod extinction;
+mod half_scale;
 mod index_builder;
+mod place_mask;
 mod slot;
 #[cfg(test)]
 mod test_grids;
 mod trilinear;
 mod voxel_source;
 
+pub use brick_atlas::BrickPrecision;
+pub use budget::DensityGridError;
 pub use density_grid::{DensityGrid, GridStatistics};
 pub use extinction::GridExtinction;

@@ -14,6 +14,7 @@
 mod block;
 mod blosc;
 mod codec;
+mod contents;
 mod cursor;
 mod descriptor;
 mod error;
@@ -31,6 +32,7 @@ mod tree;
 mod value;
 
 pub use error::VdbError;
+pub(super) use error::memory_size;
 pub use file::VdbFile;
 pub use find::find_density;
 pub use sanitize::{SanitizeCount, sanitize_density};
@@ -61,10 +63,12 @@ pub trait VolumeSource {
     fn load_vector(&self, index: usize, limits: &Limits) -> Result<SparseGrid<[f32; 3]>, VdbError>;
 }
 
-/// What reading a grid may cost.
+/// What reading a grid may cost, from the bytes of its file to the voxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Memory of one loaded grid \[bytes\].
+    /// Memory of one loaded grid and of what it is made from: of the file's bytes and the voxels while they
+    /// are read, and of the voxels and the bricks while a
+    /// [`DensityGrid`](crate::medium::grid::DensityGrid) is built \[bytes\].
     pub max_bytes: u64,
 }
 
