@@ -11,6 +11,7 @@ use super::{
     trilinear::Corners,
     voxel_source::{Voxels, raise},
 };
+use crate::medium::pages::Pages;
 
 /// Cells along a brick's edge.
 pub(super) const BRICK_EDGE: usize = 8;
@@ -47,17 +48,22 @@ pub enum BrickPrecision {
 /// Values and largest value of each brick.
 #[derive(Debug)]
 pub(super) struct BrickAtlas {
-    values: BrickValues,
+    /// 9^3 values a brick; voxel (x, y, z) is number 81x + 9y + z.
+    values: Pages,
+    encoding: Encoding,
     /// Largest value of each brick, as it is stored.
     maxima: Vec<f32>,
 }
 
-/// 9^3 values a brick; voxel (x, y, z) is number 81x + 9y + z.
+/// What the bytes of a value mean.
 #[derive(Debug)]
-enum BrickValues {
-    Single(Vec<f32>),
-    Half { values: Vec<u16>, scale: HalfScale },
+enum Encoding {
+    Single,
+    Half(HalfScale),
 }
+
+const SINGLE_BYTES: usize = size_of::<f32>();
+const HALF_BYTES: usize = size_of::<u16>();
 
 impl BrickAtlas {
     /// Copies the values of `count` bricks, each given with its seven upper neighbours. `max_value` returns the
@@ -71,31 +77,32 @@ impl BrickAtlas {
     ) -> Result<Self, DensityGridError> {
         let mut maxima = budget.vector(count)?;
         maxima.resize(count, 0.0);
-        let bricks = maxima.par_iter_mut().enumerate().with_min_len(BRICKS_A_TASK);
-        // Filled by the threads straight from the heap's untouched pages: nothing is written twice.
-        let values = match precision {
-            BrickPrecision::Single => {
-                let mut values = budget.vector(count)?;
-                values.par_extend(bricks.map(|(brick, max)| {
-                    let mut values = [0.0; BRICK_VOXELS];
-                    *max = gather(&voxels_of(brick), &mut values);
-                    values
-                }));
-                BrickValues::Single(values.into_flattened())
-            }
-            BrickPrecision::Half => {
-                let scale = HalfScale::new(max_value());
-                let mut values = budget.vector(count)?;
-                values.par_extend(bricks.map(|(brick, max)| {
-                    let mut values = [0.0; BRICK_VOXELS];
-                    let largest = gather(&voxels_of(brick), &mut values);
-                    *max = scale.rounded(largest);
-                    scale.encode(&values)
-                }));
-                BrickValues::Half { values: values.into_flattened(), scale }
-            }
+        let (encoding, value_bytes) = match precision {
+            BrickPrecision::Single => (Encoding::Single, SINGLE_BYTES),
+            BrickPrecision::Half => (Encoding::Half(HalfScale::new(max_value())), HALF_BYTES),
         };
-        Ok(Self { values, maxima })
+        let brick_bytes = BRICK_VOXELS * value_bytes;
+        let mut values = budget.pages(count.saturating_mul(brick_bytes))?;
+        values
+            .par_chunks_exact_mut(brick_bytes)
+            .zip(&mut maxima)
+            .enumerate()
+            .with_min_len(BRICKS_A_TASK)
+            .for_each(|(brick, (bytes, max))| {
+                let mut values = [0.0; BRICK_VOXELS];
+                let largest = gather(&voxels_of(brick), &mut values);
+                *max = match &encoding {
+                    Encoding::Single => {
+                        store(bytes, values.map(f32::to_ne_bytes));
+                        largest
+                    }
+                    Encoding::Half(scale) => {
+                        store(bytes, scale.encode(&values).map(u16::to_ne_bytes));
+                        scale.rounded(largest)
+                    }
+                };
+            });
+        Ok(Self { values, encoding, maxima })
     }
 
     /// The largest value of any brick, 0 if there is none.
@@ -113,9 +120,13 @@ impl BrickAtlas {
     #[inline(always)]
     pub(super) fn corners(&self, brick: usize, [x, y, z]: [usize; 3]) -> Corners {
         let first = brick * BRICK_VOXELS + x * STRIDE_X + y * STRIDE_Y + z;
-        match &self.values {
-            BrickValues::Single(values) => corners(values, first, f64::from),
-            BrickValues::Half { values, scale } => corners(values, first, |bits| scale.decode(bits)),
+        match &self.encoding {
+            Encoding::Single => {
+                corners(&self.values, first, |bytes| f32::from_ne_bytes(bytes).into())
+            }
+            Encoding::Half(scale) => {
+                corners(&self.values, first, |bytes| scale.decode(u16::from_ne_bytes(bytes)))
+            }
         }
     }
 
@@ -126,18 +137,24 @@ impl BrickAtlas {
 
     /// Memory held \[bytes\].
     pub(super) fn bytes(&self) -> usize {
-        let values = match &self.values {
-            BrickValues::Single(values) => values.capacity() * size_of::<f32>(),
-            BrickValues::Half { values, .. } => values.capacity() * size_of::<u16>(),
-        };
-        values + self.maxima.capacity() * size_of::<f32>()
+        self.values.len() + self.maxima.capacity() * size_of::<f32>()
     }
+}
+
+/// Puts a brick's encoded values in its place.
+#[inline(always)]
+fn store<const N: usize>(place: &mut [u8], values: [[u8; N]; BRICK_VOXELS]) {
+    place.copy_from_slice(values.as_flattened());
 }
 
 /// The corners of the cell whose first one has this number.
 #[inline(always)]
-fn corners<T: Copy>(values: &[T], first: usize, decode: impl Fn(T) -> f64) -> Corners {
-    let v = &values[first..first + CORNER_REACH];
+fn corners<const N: usize>(
+    bytes: &[u8],
+    first: usize,
+    decode: impl Fn([u8; N]) -> f64,
+) -> Corners {
+    let (v, _) = bytes[N * first..][..N * CORNER_REACH].as_chunks::<N>();
     [
         decode(v[0]),
         decode(v[1]),

@@ -1,7 +1,10 @@
 //! What building a sampling structure may take: every vector and table is counted against the limit before it
 //! is allocated.
 
-use crate::medium::vdb::{Limits, memory_size};
+use crate::medium::{
+    pages::Pages,
+    vdb::{Limits, memory_size},
+};
 
 /// Why no [`DensityGrid`](super::DensityGrid) was built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -68,5 +71,11 @@ impl Budget {
         let reserved = vector.try_reserve_exact(len);
         reserved.map_err(|_| DensityGridError::OutOfMemory { needed: self.needed })?;
         Ok(vector)
+    }
+
+    /// As many bytes, all 0.
+    pub(super) fn pages(&mut self, len: usize) -> Result<Pages, DensityGridError> {
+        self.spend(len as u64)?;
+        Pages::zeroed(len).map_err(|_| DensityGridError::OutOfMemory { needed: self.needed })
     }
 }

@@ -50,7 +50,8 @@ impl Voxels<'_> {
 /// A density that can bound a free flight: an infinite or undefined majorant would never end one.
 #[inline(always)]
 pub(super) fn sanitised(value: f32) -> f32 {
-    if value > 0.0 && value < f32::INFINITY { value } else { 0.0 }
+    // Without a branch between the comparisons, which would be a jump a voxel.
+    if (value > 0.0) & (value < f32::INFINITY) { value } else { 0.0 }
 }
 
 /// A leaf or a tile of 8^3 voxels.

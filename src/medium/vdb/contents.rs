@@ -2,14 +2,15 @@
 
 use std::fs::File;
 use std::io::{self, Read};
+use std::ops::Deref;
 use std::path::Path;
-use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::Limits;
 use super::error::VdbError;
 use crate::math::content_hash::{CHUNK_BYTES, hash_bytes, hash_chunk, hash_chunks};
+use crate::medium::pages::Pages;
 
 pub(super) const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
 
@@ -19,9 +20,29 @@ const CHUNKS_A_TASK: usize = 16;
 /// A file in memory.
 #[derive(Debug)]
 pub(super) struct Contents {
-    pub bytes: Vec<u8>,
+    pub bytes: FileBytes,
     /// Of all the bytes.
     pub hash: u64,
+}
+
+/// The bytes of a file.
+#[derive(Debug)]
+pub(super) enum FileBytes {
+    /// Read here.
+    Pages(Pages),
+    /// From a caller, or from a pipe.
+    Vec(Vec<u8>),
+}
+
+impl Deref for FileBytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Pages(pages) => pages,
+            Self::Vec(bytes) => bytes,
+        }
+    }
 }
 
 impl Contents {
@@ -57,38 +78,22 @@ impl Contents {
     /// Bytes that are in memory already.
     pub(super) fn of_bytes(bytes: Vec<u8>) -> Self {
         let hash = hash_bytes(&bytes);
-        Self { bytes, hash }
+        Self { bytes: FileBytes::Vec(bytes), hash }
     }
 }
 
-/// Every chunk is read to where it is hashed, close to the processor, and goes from there to its place in
-/// memory that nothing has touched before.
 fn read_in_parallel(file: &File, size: u64) -> io::Result<Contents> {
-    let out_of_memory = |_| io::Error::from(io::ErrorKind::OutOfMemory);
-    let len = usize::try_from(size).map_err(out_of_memory)?;
-    let mut chunks: Vec<[u8; CHUNK_BYTES]> = Vec::new();
-    let mut hashes = vec![0; len.div_ceil(CHUNK_BYTES)];
-    chunks.try_reserve_exact(hashes.len())?;
-    let failure = OnceLock::new();
-    let read_chunk = |(number, hash): (usize, &mut u64)| {
-        let mut chunk = [0; CHUNK_BYTES];
-        let start = number * CHUNK_BYTES;
-        let filled = &mut chunk[..CHUNK_BYTES.min(len - start)];
-        match read_exact_at(file, filled, start as u64) {
-            Ok(()) => *hash = hash_chunk(filled),
-            Err(error) => drop(failure.set(error)),
-        }
-        chunk
-    };
-    chunks.par_extend(
-        hashes.par_iter_mut().enumerate().with_min_len(CHUNKS_A_TASK).map(read_chunk),
-    );
-    if let Some(error) = failure.into_inner() {
-        return Err(error);
-    }
-    let mut bytes = chunks.into_flattened();
-    bytes.truncate(len);
-    Ok(Contents { bytes, hash: hash_chunks(&hashes, size) })
+    let len = usize::try_from(size).map_err(|_| io::ErrorKind::OutOfMemory)?;
+    let mut bytes = Pages::zeroed(len)?;
+    let chunks = bytes.par_chunks_mut(CHUNK_BYTES).enumerate().with_min_len(CHUNKS_A_TASK);
+    // Each chunk is hashed while it is in the processor's cache.
+    let hashes: Vec<u64> = chunks
+        .map(|(number, chunk)| {
+            read_exact_at(file, chunk, number as u64 * CHUNK_BYTES as u64)?;
+            Ok(hash_chunk(chunk))
+        })
+        .collect::<io::Result<_>>()?;
+    Ok(Contents { bytes: FileBytes::Pages(bytes), hash: hash_chunks(&hashes, size) })
 }
 
 #[cfg(unix)]
@@ -125,7 +130,7 @@ mod tests {
             let limits = |max_bytes| Limits { max_bytes };
             let read = Contents::read(&path, "a.vdb", &limits(len as u64)).unwrap();
             assert_eq!((read.bytes.len(), read.hash), (len, hash_bytes(&bytes)));
-            assert!(read.bytes == bytes);
+            assert!(*read.bytes == *bytes);
             let error = Contents::read(&path, "a.vdb", &limits(len as u64 - 1)).unwrap_err();
             assert!(matches!(error, VdbError::FileTooLarge { .. }), "{error}");
         }

@@ -44,7 +44,7 @@ impl VdbFile {
     pub fn open_within(path: &Path, limits: &Limits) -> Result<Self, VdbError> {
         let name = path.display().to_string();
         let contents = Contents::read(path, &name, limits)?;
-        let held_bytes = contents.bytes.capacity() as u64;
+        let held_bytes = contents.bytes.len() as u64;
         Self::list(name, contents, held_bytes)
     }
 
