@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
+use super::hash::FileHashes;
 use super::{environment, volume};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
@@ -12,11 +13,12 @@ use crate::light::{
 use crate::math::Rgb;
 use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
 
-/// The medium, with `warnings` of what had to be mended in its file.
+/// The medium, with `warnings` of what had to be mended in its file, and that file's hash.
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
     warnings: &mut Vec<String>,
+    hashes: &mut FileHashes,
 ) -> Result<Medium, Problem> {
     match section {
         MediumSection::Homogeneous { bounds, sigma_t, albedo, phase } => Ok(Medium {
@@ -32,6 +34,7 @@ pub(super) fn medium(
                 *density_scale,
                 transform.affine(),
                 warnings,
+                hashes,
             )?;
             Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
         }

@@ -78,7 +78,8 @@ impl Scene {
 
     fn build(file: &SceneFile, directory: &Path) -> Result<Self, Problem> {
         let mut warnings = Vec::new();
-        let medium = build::medium(&file.medium, directory, &mut warnings)?;
+        let mut hashes = hash::FileHashes::new();
+        let medium = build::medium(&file.medium, directory, &mut warnings, &mut hashes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
@@ -90,7 +91,7 @@ impl Scene {
             photons: file.photons,
             estimate: file.estimate,
             render: file.render,
-            hash: hash::scene_hash(file, directory)?,
+            hash: hash::scene_hash(file, directory, &hashes)?,
             warnings,
         })
     }

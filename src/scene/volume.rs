@@ -3,19 +3,22 @@
 use std::path::Path;
 
 use super::error::Problem;
+use super::hash::FileHashes;
 use crate::math::DAffine3;
-use crate::medium::grid::DensityGrid;
+use crate::medium::grid::{BrickPrecision, DensityGrid};
 use crate::medium::vdb::{Limits, VdbFile, VolumeSource, find_density, sanitize_density};
 use crate::medium::{Bounds, GridExtinction, MediumExtinction, UniformExtinction};
 
 /// The extinction `density_scale * density` \[1/m\] of a grid, and where it is. `density` names the grid;
-/// `transform` leads from the file's world to the scene's. Pushes a sentence on `warnings` for what was mended.
+/// `transform` leads from the file's world to the scene's. Pushes a sentence on `warnings` for what was mended,
+/// and enters the file's hash in `hashes`.
 pub(super) fn read(
     file: &Path,
     density: Option<&str>,
     density_scale: f64,
     transform: DAffine3,
     warnings: &mut Vec<String>,
+    hashes: &mut FileHashes,
 ) -> Result<(Bounds, MediumExtinction), Problem> {
     let source = VdbFile::open(file).map_err(|e| Problem::new("medium.file", e.to_string()))?;
     let in_grid = |text: String| Problem::new("medium.density", text);
@@ -39,8 +42,12 @@ pub(super) fn read(
         warnings.push(format!("{} is damaged beyond its readable grids: {damage}", file.display()));
     }
 
+    hashes.insert("medium.file".into(), source.content_hash());
+    // The bricks are made from the voxels alone.
+    drop(source);
     let index_to_world = transform * sparse.index_to_world;
-    let grid = DensityGrid::from_sparse(&sparse);
+    let grid = DensityGrid::build(&sparse, BrickPrecision::Single, &limits)
+        .map_err(|error| in_grid(format!("{name} cannot be used: {error}")))?;
     drop(sparse);
     if grid.statistics().max_density <= 0.0 {
         return Err(in_grid(format!("{name} is empty: no density is above 0")));

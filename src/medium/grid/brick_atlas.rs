@@ -149,11 +149,7 @@ fn store<const N: usize>(place: &mut [u8], values: [[u8; N]; BRICK_VOXELS]) {
 
 /// The corners of the cell whose first one has this number.
 #[inline(always)]
-fn corners<const N: usize>(
-    bytes: &[u8],
-    first: usize,
-    decode: impl Fn([u8; N]) -> f64,
-) -> Corners {
+fn corners<const N: usize>(bytes: &[u8], first: usize, decode: impl Fn([u8; N]) -> f64) -> Corners {
     let (v, _) = bytes[N * first..][..N * CORNER_REACH].as_chunks::<N>();
     [
         decode(v[0]),

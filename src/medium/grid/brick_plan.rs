@@ -149,7 +149,8 @@ fn touched_places(
     budget.spend((source.regions().len() * REGION_BYTES) as u64)?;
     let mut regions: Vec<(Key, PlaceMask)> =
         source.regions().iter().map(|region| (region.key, region.present)).collect();
-    let mut numbers: HashMap<Key, usize> = (0..).zip(&regions).map(|(n, (key, _))| (*key, n)).collect();
+    let mut numbers: HashMap<Key, usize> =
+        (0..).zip(&regions).map(|(n, (key, _))| (*key, n)).collect();
     // A brick touches its upper neighbours: lowered along one axis after the other, an entry reaches all
     // seven bricks below it.
     for axis in 0..3 {

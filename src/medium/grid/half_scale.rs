@@ -66,7 +66,8 @@ mod tests {
             for n in 0..4000 {
                 let density = max * 0.99_f32.powi(n);
                 let error = (f64::from(scale.rounded(density)) - f64::from(density)).abs();
-                let bound = (2f64.powi(-11) * f64::from(density)).max(2f64.powi(-39) * f64::from(max));
+                let bound =
+                    (2f64.powi(-11) * f64::from(density)).max(2f64.powi(-39) * f64::from(max));
                 assert!(error <= bound, "{density} of {max}: {error} > {bound}");
             }
         }

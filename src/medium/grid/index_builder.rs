@@ -179,7 +179,8 @@ impl IndexBuilder<'_> {
         self.budget.spend_table::<(u32, Key)>(COARSE_SHIFTS.len() * root_count)?;
 
         let mut slots = HashMap::new();
-        for region in self.source.region_tiles().iter().flat_map(|(key, _)| lower_neighbours(*key)) {
+        for region in self.source.region_tiles().iter().flat_map(|(key, _)| lower_neighbours(*key))
+        {
             let slot = self.slot(self.region_constants(region))?;
             slots.insert(self.local_key(region, REGION_SHIFT), slot);
         }

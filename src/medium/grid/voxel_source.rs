@@ -213,10 +213,8 @@ fn entries(
     let mut entries = budget.vector(leaf_count + tile_count)?;
     // Sorting takes as much again.
     budget.spend((entries.capacity() * size_of::<Entry>()) as u64)?;
-    let entry = |origin: Key, number| Entry {
-        brick: origin.map(|c| c >> 3),
-        number: EntryNumber(number),
-    };
+    let entry =
+        |origin: Key, number| Entry { brick: origin.map(|c| c >> 3), number: EntryNumber(number) };
     let tiles = (0..).zip(&grid.tiles).filter(is_brick);
     entries.extend(tiles.map(|(number, tile)| entry(tile.origin, number | EntryNumber::TILE)));
     let leaves = (0..).zip(&grid.leaves[..leaf_count]);
@@ -233,13 +231,9 @@ fn entries(
     Ok(entries)
 }
 
-fn regions(
-    entries: &[Entry],
-    budget: &mut Budget,
-) -> Result<Vec<SourceRegion>, DensityGridError> {
-    let of_one_region = || {
-        entries.chunk_by(|entry, next| region_of(entry.brick) == region_of(next.brick))
-    };
+fn regions(entries: &[Entry], budget: &mut Budget) -> Result<Vec<SourceRegion>, DensityGridError> {
+    let of_one_region =
+        || entries.chunk_by(|entry, next| region_of(entry.brick) == region_of(next.brick));
     let mut regions = budget.vector(of_one_region().count())?;
     let mut first = 0;
     for entries in of_one_region() {

@@ -83,8 +83,7 @@ pub(super) fn load<V: GridValue, O: Copy + Default + Send + Sync>(
     walk(&mut cursor, &tree.layout, &mut builder)?;
     let Builder { mut grid, background, .. } = builder;
 
-    let unpacking =
-        Unpacking { layout: &tree.layout, masks: &grid.masks, background, convert };
+    let unpacking = Unpacking { layout: &tree.layout, masks: &grid.masks, background, convert };
     let mut values = with_room(leaf_count, needed)?;
     unpacking.unpack_all(cursor, &tree.census.leaf_active_counts, &mut values)?;
     grid.values = values.into_flattened();
@@ -167,9 +166,7 @@ impl<V: GridValue, C> Unpacking<'_, V, C> {
         }));
         match first_fault.into_inner() {
             usize::MAX => Ok(()),
-            number => {
-                unpack(&batch[number], &masks[number], &mut Scratch::default()).map(drop)
-            }
+            number => unpack(&batch[number], &masks[number], &mut Scratch::default()).map(drop),
         }
     }
 }

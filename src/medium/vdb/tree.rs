@@ -115,7 +115,9 @@ impl<'a> Node<'a> {
         let inactive =
             bits(self.active.iter().zip(&self.children).map(|(active, child)| !active & !child));
         let differing = inactive.filter(move |&offset| !values[offset].is_same(background));
-        self.active_tiles().map(|offset| (offset, true)).chain(differing.map(|offset| (offset, false)))
+        self.active_tiles()
+            .map(|offset| (offset, true))
+            .chain(differing.map(|offset| (offset, false)))
     }
 }
 
@@ -222,9 +224,7 @@ pub(super) fn count_ones(words: &[u64]) -> usize {
 
 /// Places of the bits set.
 fn bits(words: impl Iterator<Item = u64>) -> impl Iterator<Item = usize> {
-    words
-        .enumerate()
-        .flat_map(|(index, word)| bits_of(word).map(move |bit| 64 * index + bit))
+    words.enumerate().flat_map(|(index, word)| bits_of(word).map(move |bit| 64 * index + bit))
 }
 
 /// Places of the bits set in one word.
