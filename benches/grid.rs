@@ -68,15 +68,6 @@ fn scene(optical_depth: f64) -> (GridExtinction, Vec<(Ray, Span)>) {
     let unit = GridExtinction::new(DensityGrid::from_sparse(&cloud()), DAffine3::IDENTITY, 1.0);
     let mean = rays.iter().map(|(ray, span)| unit.optical_depth(ray, *span).x).sum::<f64>()
         / RAY_COUNT as f64;
-    let cells: usize = rays
-        .iter()
-        .map(|(r, s)| {
-            let mut p = RayProfile::default();
-            unit.profile(r, *s, &mut p);
-            format!("{p:?}").matches("ProfileKnot").count()
-        })
-        .sum();
-    eprintln!("cells {cells} {:?}", unit.grid().statistics());
     let grid = DensityGrid::from_sparse(&cloud());
     (GridExtinction::new(grid, DAffine3::IDENTITY, optical_depth / mean), rays)
 }

@@ -176,7 +176,7 @@ fn a_level_set_is_refused_unless_it_is_to_be_filled() {
 fn memory_is_limited_on_request() {
     let limited = |max| Overrides { max_volume_memory: Some(max), ..Overrides::default() };
     let refused = refusal_with(&media("smoke_plume.vdb"), "", &limited(100_000));
-    assert!(refused.contains("the limit is 97.7 KiB"), "{refused}");
+    assert!(refused.contains("the limit on memory is 97.7 KiB"), "{refused}");
     assert!(refused.contains("--max-volume-memory"), "{refused}");
     load_with(&media("smoke_plume.vdb"), "", &limited(100 << 20)).unwrap();
 }

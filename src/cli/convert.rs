@@ -17,7 +17,7 @@ use super::error::CliError;
 
 /// Writes the grids that the arguments name.
 pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
-    let input = VdbFile::open(&arguments.input)?;
+    let input = VdbFile::open_within(&arguments.input, &arguments.volume.limits())?;
     let input_len = byte_count(&arguments.input)?;
     let indices = chosen_grids(&input, arguments)?;
     let written =

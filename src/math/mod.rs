@@ -3,6 +3,7 @@
 //! Geometry and transport are computed in `f64`: a scene may lie a million metres from the origin
 //! or be a micrometre wide. Only stored photons and images are `f32`.
 
+pub(crate) mod content_hash;
 mod random;
 mod ray;
 mod spherical_triangle;

@@ -10,6 +10,7 @@ pub mod grid;
 mod homogeneous;
 mod moments;
 mod overlap;
+mod pages;
 mod phase;
 mod profile;
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::environment;
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
+use super::hash::FileHashes;
 use super::volume::{DensityVolume, VolumeRules};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
@@ -13,12 +14,13 @@ use crate::light::{
 use crate::math::Rgb;
 use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
 
-/// The medium, with `warnings` of what had to be mended in its file.
+/// The medium, with `warnings` of what had to be mended in its file, and that file's hash.
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
     rules: &VolumeRules,
     warnings: &mut Vec<String>,
+    hashes: &mut FileHashes,
 ) -> Result<Medium, Problem> {
     match section {
         MediumSection::Homogeneous { bounds, sigma_t, albedo, phase } => Ok(Medium {
@@ -32,6 +34,7 @@ pub(super) fn medium(
             density,
             density_scale,
             sdf_to_fog,
+            precision,
             albedo,
             phase,
             transform,
@@ -40,10 +43,11 @@ pub(super) fn medium(
                 file: &directory.join(file),
                 grid: density.as_deref(),
                 sdf_to_fog: *sdf_to_fog,
+                precision: *precision,
                 density_scale: *density_scale,
                 transform: transform.affine(),
             };
-            let (bounds, extinction) = volume.read(rules, warnings)?;
+            let (bounds, extinction) = volume.read(rules, warnings, hashes)?;
             Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
         }
     }

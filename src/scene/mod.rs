@@ -80,7 +80,9 @@ impl Scene {
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
         let mut warnings = Vec::new();
-        let medium = build::medium(&file.medium, directory, rules, &mut warnings)?;
+        let mut hashes = hash::FileHashes::new();
+        let medium =
+            build::medium(&file.medium, directory, rules, &mut warnings, &mut hashes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
@@ -92,7 +94,7 @@ impl Scene {
             photons: file.photons,
             estimate: file.estimate,
             render: file.render,
-            hash: hash::scene_hash(file, directory)?,
+            hash: hash::scene_hash(file, directory, &hashes)?,
             warnings,
         })
     }

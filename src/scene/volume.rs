@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::error::Problem;
+use super::hash::FileHashes;
 use crate::math::DAffine3;
-use crate::medium::grid::DensityGrid;
+use crate::medium::grid::{BrickPrecision, DensityGrid};
 use crate::medium::vdb::{
     GridSummary, Limits, SparseGrid, VdbError, VdbFile, VolumeSource, find_density,
     find_density_or_level_set, fog_of_level_set, sanitize_density,
@@ -28,6 +29,8 @@ pub(super) struct DensityVolume<'a> {
     pub grid: Option<&'a str>,
     /// Whether a level set is filled with fog.
     pub sdf_to_fog: bool,
+    /// How densities are kept.
+    pub precision: BrickPrecision,
     /// Extinction of density 1 \[1/m\].
     pub density_scale: f64,
     /// From the file's world to the scene's.
@@ -35,13 +38,16 @@ pub(super) struct DensityVolume<'a> {
 }
 
 impl DensityVolume<'_> {
-    /// Reads the extinction and where it is. Pushes a sentence on `warnings` for whatever was mended.
+    /// Reads the extinction and where it is. Pushes a sentence on `warnings` for whatever was mended, and enters the
+    /// file's hash in `hashes`.
     pub(super) fn read(
         &self,
         rules: &VolumeRules,
         warnings: &mut Vec<String>,
+        hashes: &mut FileHashes,
     ) -> Result<(Bounds, MediumExtinction), Problem> {
-        let source = VdbFile::open(self.file).map_err(|error| in_file(&error))?;
+        let source =
+            VdbFile::open_within(self.file, &rules.limits).map_err(|error| in_file(&error))?;
         let index = self.find(&source)?;
         let name = format!("grid {:?} of {}", source.grids()[index].unique_name, source.name());
         let stored = source.load_scalar(index, &rules.limits).map_err(|error| in_grid(&error))?;
@@ -52,8 +58,13 @@ impl DensityVolume<'_> {
             warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
         }
 
+        hashes.insert("medium.file".into(), source.content_hash());
+        // The bricks are made from the voxels alone.
+        drop(source);
         let index_to_world = self.transform * sparse.index_to_world;
-        let grid = DensityGrid::from_sparse(&sparse);
+        let grid = DensityGrid::build(&sparse, self.precision, &rules.limits).map_err(|error| {
+            Problem::new("medium.density", format!("{name} cannot be used: {error}"))
+        })?;
         drop(sparse);
         if grid.statistics().max_density <= 0.0 {
             let text = format!("{name} is empty: no density is above 0");

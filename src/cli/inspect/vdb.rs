@@ -13,7 +13,7 @@ use crate::cli::{print_json, print_to_stdout};
 
 /// Shows the grids of the file at `path`.
 pub fn inspect(path: &Path, as_json: bool, limits: &Limits) -> Result<(), CliError> {
-    let file = VdbFile::open(path)?;
+    let file = VdbFile::open_within(path, limits)?;
     let grids = file.grids().iter().enumerate();
     let grids: Vec<Grid> =
         grids.map(|(index, summary)| Grid::of(&file, index, summary, limits)).collect();

@@ -1,6 +1,11 @@
 //! How many voxels are active, and where: the extent of the medium.
 
+use rayon::prelude::*;
+
 use crate::medium::vdb::{SparseGrid, Tile};
+
+/// Leaves a thread takes at once.
+const LEAVES_A_TASK: usize = 1024;
 
 /// The active voxels of a grid, tiles included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,12 +23,14 @@ impl ActiveVoxels {
     pub(super) fn of(grid: &SparseGrid<f32>) -> Option<Self> {
         let leaves = grid
             .leaves
-            .iter()
+            .par_iter()
             .zip(&grid.masks)
-            .zip(grid.values.chunks_exact(512))
-            .filter_map(|((origin, mask), _)| Self::of_leaf(*origin, mask));
+            .zip(grid.values.par_chunks_exact(512))
+            .with_min_len(LEAVES_A_TASK)
+            .filter_map(|((origin, mask), _)| Self::of_leaf(*origin, mask))
+            .reduce_with(Self::merge);
         let tiles = grid.tiles.iter().filter(|tile| tile.active).map(Self::of_tile);
-        leaves.chain(tiles).reduce(Self::merge)
+        leaves.into_iter().chain(tiles).reduce(Self::merge)
     }
 
     fn of_leaf(origin: [i32; 3], mask: &[u64; 8]) -> Option<Self> {

@@ -3,15 +3,22 @@
 //! Voxels are point samples at integer index coordinates, trilinear in between (OpenVDB's BoxSampler), and
 //! nothing lies outside the render bounds \[min - 1, max + 1\] of the active voxels.
 
+use std::alloc::{Layout, handle_alloc_error};
+
 use super::{
     active_voxels::ActiveVoxels,
-    brick_atlas::{BRICK_EDGE, BrickAtlas},
+    brick_atlas::{BRICK_EDGE, BrickAtlas, BrickPrecision},
     brick_index::{BrickIndex, Cell, Content, ROOT_SHIFT},
+    brick_plan::LocalKeys,
+    budget::{Budget, DensityGridError},
     index_builder::build,
     trilinear::blend,
     voxel_source::VoxelSource,
 };
-use crate::{math::DVec3, medium::vdb::SparseGrid};
+use crate::{
+    math::DVec3,
+    medium::vdb::{Limits, SparseGrid},
+};
 
 /// A density field ready for Monte Carlo: lookups, majorants and optical depths.
 #[derive(Debug)]
@@ -41,19 +48,40 @@ pub struct GridStatistics {
 }
 
 impl DensityGrid {
+    /// Builds the sampling structure of a grid whose size the caller knows: as [`DensityGrid::build`] with single
+    /// precision and no limit.
+    ///
+    /// As a [`Vec`] does, it aborts the process where memory runs out.
+    pub fn from_sparse(grid: &SparseGrid<f32>) -> Self {
+        let limits = Limits { max_bytes: u64::MAX };
+        Self::build(grid, BrickPrecision::Single, &limits)
+            .unwrap_or_else(|_| handle_alloc_error(Layout::new::<SparseGrid<f32>>()))
+    }
+
     /// Builds the sampling structure. Values that are not finite or below 0 count as 0.
     ///
-    /// Memory is proportional to the leaves and tiles of `grid`, whatever their size or distance.
-    pub fn from_sparse(grid: &SparseGrid<f32>) -> Self {
+    /// Memory is proportional to the leaves and tiles of `grid`, whatever their size or distance, with a large
+    /// factor if they are scattered: a lone leaf has up to eight bricks in as many tables. All of it is counted
+    /// before it is allocated, `grid` included.
+    ///
+    /// # Errors
+    /// When `grid` and the structure together need more memory than `limits` allows or there is.
+    pub fn build(
+        grid: &SparseGrid<f32>,
+        precision: BrickPrecision,
+        limits: &Limits,
+    ) -> Result<Self, DensityGridError> {
+        let mut budget = Budget::new(grid.memory_bytes(), limits)?;
         let active = ActiveVoxels::of(grid);
         let (min, max) = active.map_or(([0; 3], [0; 3]), |active| (active.min, active.max));
         let base = min.map(|c| ((c - 1) >> ROOT_SHIFT) << ROOT_SHIFT);
         let first = std::array::from_fn(|axis| min[axis] - 1 - base[axis]);
         let last = std::array::from_fn(|axis| max[axis] - base[axis]);
-        let source = VoxelSource::new(grid);
-        let (index, atlas) = build(&source, base, first, last);
+        let source = VoxelSource::new(grid, &mut budget)?;
+        let local = LocalKeys { base, first, last };
+        let (index, atlas) = build(&source, local, precision, &mut budget)?;
         let max_density = source.max_constant().max(atlas.max());
-        Self { active, base, first, last, index, atlas, max_density }
+        Ok(Self { active, base, first, last, index, atlas, max_density })
     }
 
     /// Density at a point given in index space; 0 outside the render bounds.

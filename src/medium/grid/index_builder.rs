@@ -1,141 +1,54 @@
-//! Builds the sampling structure from voxels, in parallel. What it samples to depends on the voxels alone.
-//!
-//! Only bricks that touch a leaf are stored in full: a brick with a leaf, and the up to seven below it
-//! whose last layer of cells reaches into the leaf. Bricks, regions and roots that only touch constant
-//! cubes keep the constants on their upper sides instead, which describe them exactly.
+//! Builds the sampling structure from voxels, in parallel. What it samples to depends on the voxels alone, and
+//! so does every byte of it.
 
 use std::collections::{HashMap, HashSet};
 
-use rayon::prelude::*;
-
 use super::{
-    brick_atlas::{BRICK_EDGE, BRICK_VOXELS, BrickAtlas},
+    brick_atlas::{BrickAtlas, BrickPrecision},
     brick_index::{
-        BRICK_SHIFT, BrickIndex, COARSE_SHIFTS, Cell, REGION_SHIFT, ROOT_SHIFT, Regions, Root,
-        TABLE_SLOTS, group_number,
+        BrickIndex, COARSE_SHIFTS, Cell, REGION_SHIFT, ROOT_SHIFT, Regions, Root, TABLE_SLOTS,
+        group_number,
     },
-    slot::Slot,
-    voxel_source::{Key, VoxelSource, Voxels, lower_neighbours, upper_neighbours},
+    brick_plan::{BrickPlan, LocalKeys, PlannedRegion, constants},
+    budget::{Budget, DensityGridError},
+    slot::{MAX_CHILDREN, Slot},
+    voxel_source::{Key, VoxelSource, lower_neighbours, upper_neighbours},
 };
 
-/// What a brick holds, its values left out.
-enum BrickContent {
-    /// The brick and its seven upper neighbours are constant.
-    Constants([f32; 8]),
-    /// Values of its own, of which this is the largest.
-    Values { max: f32 },
-}
-
-/// Builds index and atlas for the cells `first` to `last` (inclusive, local). `base` is the local origin in
-/// voxels, a multiple of 4096.
+/// Builds index and atlas for the cells in the bounds.
 pub(super) fn build(
     source: &VoxelSource,
-    base: Cell,
-    first: Cell,
-    last: Cell,
-) -> (BrickIndex, BrickAtlas) {
-    let local = LocalKeys { base, first, last };
-    let keys = brick_keys(source, &local);
-    let contents: Vec<BrickContent> =
-        keys.par_iter().map(|&key| BrickContent::of(source, key)).collect();
-    let atlas = build_atlas(source, &keys, &contents);
-
-    let mut builder = IndexBuilder { source, local, graded: Graded::default() };
-    let (tables, table_regions) = builder.tables(&keys, &contents);
-    let regions = builder.regions(&table_regions);
-    let inhabited_groups = tables.chunks_exact(TABLE_SLOTS).map(inhabited_groups).collect();
-    let index = BrickIndex { regions, tables, inhabited_groups, graded: builder.graded.blocks };
-    (index, atlas)
-}
-
-/// Translates keys to local coordinates.
-struct LocalKeys {
-    base: Cell,
-    first: Cell,
-    last: Cell,
-}
-
-impl LocalKeys {
-    fn local(&self, key: Key, shift: u32) -> Cell {
-        std::array::from_fn(|axis| i64::from(key[axis]) - (self.base[axis] >> shift))
+    local: LocalKeys,
+    precision: BrickPrecision,
+    budget: &mut Budget,
+) -> Result<(BrickIndex, BrickAtlas), DensityGridError> {
+    let BrickPlan { regions: planned, mut tables, stored_count } =
+        BrickPlan::new(source, &local, budget)?;
+    if stored_count > MAX_CHILDREN || planned.len() > MAX_CHILDREN {
+        budget.spend(u64::MAX)?;
     }
-
-    fn global(&self, local: Cell, shift: u32) -> Key {
-        std::array::from_fn(|axis| (local[axis] + (self.base[axis] >> shift)) as i32)
-    }
-
-    /// Whether the cube has a cell in the grid's bounds.
-    fn contains(&self, key: Key, shift: u32) -> bool {
-        let local = self.local(key, shift);
-        (0..3).all(|axis| {
-            (self.first[axis] >> shift..=self.last[axis] >> shift).contains(&local[axis])
-        })
-    }
-}
-
-/// Bricks that hold or touch a leaf or tile of their own, grouped by region.
-fn brick_keys(source: &VoxelSource, local: &LocalKeys) -> Vec<Key> {
-    let mut keys: Vec<Key> = source
-        .brick_keys()
-        .flat_map(lower_neighbours)
-        .filter(|&key| local.contains(key, BRICK_SHIFT))
-        .collect();
-    keys.par_sort_unstable_by_key(|&key| (region_of(key), key));
-    keys.dedup();
-    keys
-}
-
-fn region_of(brick: Key) -> Key {
-    brick.map(|c| c >> (REGION_SHIFT - BRICK_SHIFT))
-}
-
-impl BrickContent {
-    fn of(source: &VoxelSource, key: Key) -> Self {
-        let neighbours = upper_neighbours(key).map(|neighbour| source.brick(neighbour));
-        let constants = neighbours.map(|voxels| match voxels {
-            Voxels::Constant(value) => Some(value),
-            Voxels::Leaf(_) => None,
-        });
-        if constants.iter().all(Option::is_some) {
-            return Self::Constants(constants.map(Option::unwrap_or_default));
+    let mut builder = IndexBuilder { source, local, graded: Graded::default(), budget };
+    let mut stored: Vec<(u32, u16)> = builder.budget.vector(stored_count)?;
+    for ((number, region), table) in (0..).zip(&planned).zip(tables.chunks_exact_mut(TABLE_SLOTS)) {
+        builder.complete_table(region, table)?;
+        for place in region.stored.places() {
+            table[place] = Slot::child(stored.len());
+            stored.push((number, place as u16));
         }
-        let mut values = [0.0; BRICK_VOXELS];
-        gather(&neighbours, &mut values);
-        let (min, max) = values
-            .iter()
-            .fold((f32::INFINITY, 0.0_f32), |(min, max), &value| (min.min(value), max.max(value)));
-        if min == max { Self::Constants([max; 8]) } else { Self::Values { max } }
     }
-}
+    let regions = builder.regions(&planned)?;
+    let mut groups = builder.budget.vector(planned.len())?;
+    groups.extend(tables.chunks_exact(TABLE_SLOTS).map(inhabited_groups));
+    let graded = builder.graded.blocks;
+    let index = BrickIndex { regions, tables, inhabited_groups: groups, graded };
 
-/// Copies a brick's 9^3 voxels from it and its seven upper neighbours.
-fn gather(neighbours: &[Voxels; 8], values: &mut [f32]) {
-    let rows = values.chunks_exact_mut(BRICK_EDGE + 1);
-    for (number, row) in rows.enumerate() {
-        let (x, y) = (number / (BRICK_EDGE + 1), number % (BRICK_EDGE + 1));
-        let neighbour = (x / BRICK_EDGE) << 2 | (y / BRICK_EDGE) << 1;
-        let (x, y) = (x % BRICK_EDGE, y % BRICK_EDGE);
-        for (z, value) in row[..BRICK_EDGE].iter_mut().enumerate() {
-            *value = neighbours[neighbour].value([x, y, z]);
-        }
-        row[BRICK_EDGE] = neighbours[neighbour | 1].value([x, y, 0]);
-    }
-}
-
-fn build_atlas(source: &VoxelSource, keys: &[Key], contents: &[BrickContent]) -> BrickAtlas {
-    let (stored, maxima): (Vec<Key>, Vec<f32>) = keys
-        .iter()
-        .zip(contents)
-        .filter_map(|(&key, content)| match *content {
-            BrickContent::Values { max } => Some((key, max)),
-            BrickContent::Constants(_) => None,
-        })
-        .unzip();
-    let mut values = vec![0.0; stored.len() * BRICK_VOXELS];
-    values.par_chunks_exact_mut(BRICK_VOXELS).zip(&stored).for_each(|(values, &key)| {
-        gather(&upper_neighbours(key).map(|neighbour| source.brick(neighbour)), values);
-    });
-    BrickAtlas::new(values, maxima)
+    let voxels_of = |brick: usize| {
+        let (region, place) = stored[brick];
+        planned[region as usize].neighbourhood.voxels(place.into())
+    };
+    let max_value = || source.max_leaf_value().max(source.max_constant());
+    let atlas = BrickAtlas::new(stored_count, voxels_of, precision, max_value, budget)?;
+    Ok((index, atlas))
 }
 
 /// Which groups of 4^3 bricks in a table are not all empty.
@@ -156,15 +69,19 @@ struct Graded {
 
 impl Graded {
     /// The slot of a constant block with these values on its upper sides.
-    fn slot(&mut self, values: [f32; 8]) -> Slot {
+    fn slot(&mut self, values: [f32; 8], budget: &mut Budget) -> Result<Slot, DensityGridError> {
+        // A block and its number, in vectors and tables that may have room for as many again.
+        const BLOCK_BYTES: usize = 2 * size_of::<[f32; 8]>() + 3 * size_of::<([u32; 8], usize)>();
         if values.iter().all(|&value| value == values[0]) {
-            return Slot::uniform(values[0]);
+            return Ok(Slot::uniform(values[0]));
         }
-        let number = *self.numbers.entry(values.map(f32::to_bits)).or_insert_with(|| {
+        let number = *self.numbers.entry(values.map(f32::to_bits)).or_insert(self.blocks.len());
+        if number == self.blocks.len() {
+            let is_too_many = number > MAX_CHILDREN;
+            budget.spend(if is_too_many { u64::MAX } else { BLOCK_BYTES as u64 })?;
             self.blocks.push(values);
-            self.blocks.len() - 1
-        });
-        Slot::graded(number)
+        }
+        Ok(Slot::graded(number))
     }
 }
 
@@ -172,69 +89,69 @@ struct IndexBuilder<'a> {
     source: &'a VoxelSource<'a>,
     local: LocalKeys,
     graded: Graded,
+    budget: &'a mut Budget,
 }
 
 impl IndexBuilder<'_> {
-    /// The tables of regions that hold bricks of their own, and those regions' keys.
-    fn tables(&mut self, keys: &[Key], contents: &[BrickContent]) -> (Vec<Slot>, Vec<Key>) {
-        let mut tables = Vec::new();
-        let mut regions: Vec<Key> = Vec::new();
-        let mut stored_count = 0;
-        for (&key, content) in keys.iter().zip(contents) {
-            if regions.last() != Some(&region_of(key)) {
-                regions.push(region_of(key));
-                self.push_constant_table(region_of(key), &mut tables);
-            }
-            let slot = match *content {
-                BrickContent::Constants(values) => self.graded.slot(values),
-                BrickContent::Values { .. } => {
-                    stored_count += 1;
-                    Slot::child(stored_count - 1)
-                }
-            };
-            let [x, y, z] = key.map(|c| c as usize & 15);
-            let table = tables.len() - TABLE_SLOTS;
-            tables[table + (x << 8 | y << 4 | z)] = slot;
-        }
-        (tables, regions)
+    fn slot(&mut self, values: [f32; 8]) -> Result<Slot, DensityGridError> {
+        self.graded.slot(values, self.budget)
     }
 
-    /// A table of bricks that hold the region's constant and touch its neighbours'.
-    fn push_constant_table(&mut self, region: Key, tables: &mut Vec<Slot>) {
-        let constants = self.region_constants(region);
-        // Bricks differ only by which of the region's upper faces they touch.
-        let by_faces: [Slot; 8] = std::array::from_fn(|faces| {
-            self.graded.slot(std::array::from_fn(|corner| constants[corner & faces]))
-        });
-        tables.extend((0..TABLE_SLOTS).map(|brick| {
-            let [x, y, z] = [brick >> 8, brick >> 4 & 15, brick & 15].map(|c| usize::from(c == 15));
-            by_faces[x << 2 | y << 1 | z]
-        }));
+    /// Enters the graded bricks in a region's table.
+    fn complete_table(
+        &mut self,
+        region: &PlannedRegion,
+        table: &mut [Slot],
+    ) -> Result<(), DensityGridError> {
+        let by_neighbour = region.neighbourhood.constants;
+        if by_neighbour.iter().any(|&value| value != by_neighbour[0]) {
+            // Untouched bricks differ only by which of the region's upper faces they touch.
+            let mut by_faces = [Slot::EMPTY; 8];
+            for (faces, slot) in by_faces.iter_mut().enumerate() {
+                *slot = self.slot(std::array::from_fn(|corner| by_neighbour[corner & faces]))?;
+            }
+            for place in region.untouched() {
+                let [x, y, z] =
+                    [place >> 8, place >> 4 & 15, place & 15].map(|c| usize::from(c == 15));
+                table[place] = by_faces[x << 2 | y << 1 | z];
+            }
+        }
+        for place in region.graded.places() {
+            let values = constants(&region.neighbourhood.voxels(place));
+            table[place] = self.slot(values.unwrap_or_default())?;
+        }
+        Ok(())
     }
 
     fn region_constants(&self, region: Key) -> [f32; 8] {
         upper_neighbours(region).map(|neighbour| self.source.region(neighbour))
     }
 
-    /// The slots of all regions; `table_regions` have the tables of their own, in order.
-    fn regions(&mut self, table_regions: &[Key]) -> Regions {
+    /// The slots of all regions; those planned have tables of their own, in order.
+    fn regions(&mut self, planned: &[PlannedRegion]) -> Result<Regions, DensityGridError> {
         let first = self.local.first.map(|c| c >> REGION_SHIFT);
         let last = self.local.last.map(|c| c >> REGION_SHIFT);
         let extent: [i64; 3] = std::array::from_fn(|axis| last[axis] - first[axis] + 1);
         let volume: i128 = extent.iter().map(|&edge| i128::from(edge)).product();
-        let own_count = table_regions.len() + self.source.region_keys().count();
+        let own_count = planned.len() + self.source.region_tiles().len();
         // A slot has 4 bytes where a table has 16 KiB: 64 slots a region are no burden.
         if volume <= 4096.max(64 * own_count as i128) {
-            self.dense_regions(table_regions, first, extent)
+            self.dense_regions(planned, first, extent)
         } else {
-            self.sparse_regions(table_regions)
+            self.sparse_regions(planned)
         }
     }
 
-    fn dense_regions(&mut self, table_regions: &[Key], first: Cell, extent: Cell) -> Regions {
-        let volume = extent.iter().product::<i64>();
-        let mut slots = vec![Slot::uniform(self.source.background()); volume as usize];
-        if self.source.has_large_tiles() {
+    fn dense_regions(
+        &mut self,
+        planned: &[PlannedRegion],
+        first: Cell,
+        extent: Cell,
+    ) -> Result<Regions, DensityGridError> {
+        let volume = extent.iter().product::<i64>() as usize;
+        let mut slots = self.budget.vector(volume)?;
+        slots.resize(volume, Slot::uniform(self.source.background()));
+        if !self.source.region_tiles().is_empty() || !self.source.root_tiles().is_empty() {
             for (number, slot) in (0..).zip(&mut slots) {
                 let place = [
                     first[0] + number / (extent[1] * extent[2]),
@@ -242,36 +159,44 @@ impl IndexBuilder<'_> {
                     first[2] + number % extent[2],
                 ];
                 let constants = self.region_constants(self.local.global(place, REGION_SHIFT));
-                *slot = self.graded.slot(constants);
+                *slot = self.slot(constants)?;
             }
         }
-        for (table, &region) in table_regions.iter().enumerate() {
-            let place = self.local.local(region, REGION_SHIFT);
+        for (table, region) in planned.iter().enumerate() {
+            let place = self.local.local(region.key, REGION_SHIFT);
             let [x, y, z]: [i64; 3] = std::array::from_fn(|axis| place[axis] - first[axis]);
             slots[((x * extent[1] + y) * extent[2] + z) as usize] = Slot::child(table);
         }
-        Regions::Dense { first, extent, slots }
+        Ok(Regions::Dense { first, extent, slots })
     }
 
-    fn sparse_regions(&mut self, table_regions: &[Key]) -> Regions {
+    fn sparse_regions(&mut self, planned: &[PlannedRegion]) -> Result<Regions, DensityGridError> {
+        let slot_count = planned.len() + 8 * self.source.region_tiles().len();
+        let root_count = slot_count + 8 * self.source.root_tiles().len();
+        self.budget.spend_table::<(Key, Slot)>(slot_count)?;
+        self.budget.spend_table::<Key>(slot_count)?;
+        self.budget.spend_table::<(Key, Root)>(root_count)?;
+        self.budget.spend_table::<(u32, Key)>(COARSE_SHIFTS.len() * root_count)?;
+
         let mut slots = HashMap::new();
-        for region in self.source.region_keys().flat_map(lower_neighbours) {
-            let slot = self.graded.slot(self.region_constants(region));
+        for region in self.source.region_tiles().iter().flat_map(|(key, _)| lower_neighbours(*key))
+        {
+            let slot = self.slot(self.region_constants(region))?;
             slots.insert(self.local_key(region, REGION_SHIFT), slot);
         }
-        for (table, &region) in table_regions.iter().enumerate() {
-            slots.insert(self.local_key(region, REGION_SHIFT), Slot::child(table));
+        for (table, region) in planned.iter().enumerate() {
+            slots.insert(self.local_key(region.key, REGION_SHIFT), Slot::child(table));
         }
         let divided: HashSet<Key> =
             slots.keys().map(|region| region.map(|c| c >> (ROOT_SHIFT - REGION_SHIFT))).collect();
 
         let mut roots = HashMap::new();
-        for root in self.source.root_keys().flat_map(lower_neighbours) {
-            let slot = self.root_slot(root);
+        for root in self.source.root_tiles().iter().flat_map(|(key, _)| lower_neighbours(*key)) {
+            let slot = self.root_slot(root)?;
             roots.insert(self.local_key(root, ROOT_SHIFT), Root { slot, is_divided: false });
         }
         for &key in &divided {
-            let slot = self.root_slot(self.local.global(key.map(i64::from), ROOT_SHIFT));
+            let slot = self.root_slot(self.local.global(key.map(i64::from), ROOT_SHIFT))?;
             roots.insert(key, Root { slot, is_divided: true });
         }
         let inhabited = roots
@@ -280,12 +205,11 @@ impl IndexBuilder<'_> {
                 COARSE_SHIFTS.map(|shift| (shift, root.map(|c| c >> (shift - ROOT_SHIFT))))
             })
             .collect();
-        Regions::Sparse { slots, roots, inhabited, background: self.source.background() }
+        Ok(Regions::Sparse { slots, roots, inhabited, background: self.source.background() })
     }
 
-    fn root_slot(&mut self, root: Key) -> Slot {
-        let constants = upper_neighbours(root).map(|neighbour| self.source.root(neighbour));
-        self.graded.slot(constants)
+    fn root_slot(&mut self, root: Key) -> Result<Slot, DensityGridError> {
+        self.slot(upper_neighbours(root).map(|neighbour| self.source.root(neighbour)))
     }
 
     fn local_key(&self, key: Key, shift: u32) -> Key {

@@ -23,6 +23,9 @@ const CHILD: u32 = 0x8000_0000;
 const GRADED: u32 = 0xC000_0000;
 const NUMBER: u32 = 0x3FFF_FFFF;
 
+/// The largest number that fits in a slot.
+pub(super) const MAX_CHILDREN: usize = NUMBER as usize;
+
 impl Slot {
     /// No density.
     pub(super) const EMPTY: Self = Self(0);
@@ -32,12 +35,12 @@ impl Slot {
         Self(density.to_bits() & !CHILD)
     }
 
-    /// The child of this number, below 2^30: more would need terabytes.
+    /// The child of this number, at most [`MAX_CHILDREN`].
     pub(super) fn child(number: usize) -> Self {
         Self(CHILD | (number as u32 & NUMBER))
     }
 
-    /// The graded block of this number, below 2^30.
+    /// The graded block of this number, at most [`MAX_CHILDREN`].
     pub(super) fn graded(number: usize) -> Self {
         Self(GRADED | (number as u32 & NUMBER))
     }

@@ -8,6 +8,7 @@
 use super::codec::{Chunk, Compression, Scratch};
 use super::cursor::Cursor;
 use super::fault::Fault;
+use super::tree::bits_of;
 use super::value::{GridValue, ValueType};
 
 const WHAT: &str = "the values of a node";
@@ -90,7 +91,7 @@ impl<'a> Block<'a> {
     }
 
     /// Unpacks the values into `out`, the active ones where `active` has its bits.
-    pub(super) fn unpack<V: GridValue, O>(
+    pub(super) fn unpack<V: GridValue, O: Copy>(
         &self,
         layout: &Layout,
         active: &[u64],
@@ -100,26 +101,50 @@ impl<'a> Block<'a> {
         scratch: &mut Scratch,
     ) -> Result<(), Fault> {
         let bytes = self.chunk.unpack(self.count * layout.stored_size, scratch)?;
-        let from_stored = if layout.is_half { V::from_half_bytes } else { V::from_bytes };
-        let mut stored = bytes.chunks_exact(layout.stored_size).map(from_stored);
-        if self.count == out.len() {
-            for (value, stored) in out.iter_mut().zip(stored) {
-                *value = convert(stored);
-            }
-            return Ok(());
-        }
-        let [first, second] = self.inactive_values(layout, background);
-        for (index, value) in out.iter_mut().enumerate() {
-            let is_active = active[index >> 6] >> (index & 63) & 1 == 1;
-            *value = convert(if is_active {
-                stored.next().unwrap_or(background)
-            } else if self.selects_second(index) {
-                second
-            } else {
-                first
-            });
+        let inactive = self.inactive_values(layout, background).map(&convert);
+        // Sizes the compiler knows make the loops over the values fast.
+        if layout.is_half {
+            let stored = bytes.chunks_exact(V::HALF_SIZE).map(V::from_half_bytes);
+            self.place(stored.map(convert), active, inactive, out);
+        } else {
+            let stored = bytes.chunks_exact(V::SIZE).map(V::from_bytes);
+            self.place(stored.map(convert), active, inactive, out);
         }
         Ok(())
+    }
+
+    /// Puts the stored values in their places and inactive ones between.
+    #[inline(always)]
+    fn place<O: Copy>(
+        &self,
+        mut stored: impl Iterator<Item = O>,
+        active: &[u64],
+        inactive: [O; 2],
+        out: &mut [O],
+    ) {
+        if self.count == out.len() {
+            out.iter_mut().zip(stored).for_each(|(value, stored)| *value = stored);
+            return;
+        }
+        let [first, second] = inactive;
+        for (number, (values, &active)) in out.chunks_mut(64).zip(active).enumerate() {
+            if active != u64::MAX {
+                values.fill(first);
+                for offset in bits_of(self.selection_word(number)) {
+                    values[offset] = second;
+                }
+            }
+            let mut rest = active;
+            while rest != 0 {
+                // A run of active voxels, from its first to behind its last.
+                let start = rest.trailing_zeros() as usize;
+                let end = start + (!(rest >> start)).trailing_zeros() as usize;
+                for (value, stored) in values[start..end].iter_mut().zip(&mut stored) {
+                    *value = stored;
+                }
+                rest = if end == 64 { 0 } else { rest >> end << end };
+            }
+        }
     }
 
     fn inactive_values<V: GridValue>(&self, layout: &Layout, background: V) -> [V; 2] {
@@ -128,8 +153,10 @@ impl<'a> Block<'a> {
         [told.next().unwrap_or(untold), told.next().unwrap_or(background)]
     }
 
-    fn selects_second(&self, index: usize) -> bool {
-        self.selection.is_some_and(|bits| bits[index >> 3] >> (index & 7) & 1 == 1)
+    /// Which of 64 values are the second inactive one.
+    fn selection_word(&self, number: usize) -> u64 {
+        let word = self.selection.and_then(|bytes| bytes.get(8 * number..)?.first_chunk());
+        word.copied().map_or(0, u64::from_le_bytes)
     }
 }
 

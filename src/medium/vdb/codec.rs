@@ -112,14 +112,14 @@ impl<'a> Chunk<'a> {
         match self {
             Self::Raw(bytes) => Ok(bytes),
             Self::Zip(bytes) => {
-                scratch.unpacked.resize(len, 0);
-                inflate(bytes, &mut scratch.unpacked)?;
-                Ok(&scratch.unpacked)
+                let out = room(&mut scratch.unpacked, len);
+                inflate(bytes, out)?;
+                Ok(out)
             }
             Self::Blosc(bytes) => {
-                scratch.unpacked.resize(len, 0);
-                blosc::unpack(bytes, &mut scratch.unpacked, &mut scratch.shuffled)?;
-                Ok(&scratch.unpacked)
+                let out = room(&mut scratch.unpacked, len);
+                blosc::unpack(bytes, out, &mut scratch.shuffled)?;
+                Ok(out)
             }
         }
     }
@@ -130,6 +130,14 @@ impl<'a> Chunk<'a> {
 pub(super) struct Scratch {
     unpacked: Vec<u8>,
     shuffled: Vec<u8>,
+}
+
+/// The first `len` bytes of a buffer that grows and never shrinks.
+pub(super) fn room(buffer: &mut Vec<u8>, len: usize) -> &mut [u8] {
+    if buffer.len() < len {
+        buffer.resize(len, 0);
+    }
+    &mut buffer[..len]
 }
 
 /// Unpacks a zlib stream that must fill `out` exactly.

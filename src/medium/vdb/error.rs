@@ -92,6 +92,20 @@ pub enum VdbError {
         /// The grid.
         grid: String,
     },
+    /// The file alone would take more memory than allowed.
+    #[error(
+        "{file} holds {} and the limit on memory is {}; \
+                raise the limit (--max-volume-memory) or save the grids that are needed alone",
+        memory_size(*size), memory_size(*limit)
+    )]
+    FileTooLarge {
+        /// The file.
+        file: String,
+        /// Its size \[bytes\]; of a pipe, what was read of it.
+        size: u64,
+        /// What is allowed \[bytes\].
+        limit: u64,
+    },
     /// The grid would take more memory than allowed.
     #[error(
         "grid \"{grid}\" of {file} needs {} of memory and the limit is {}; \
@@ -125,7 +139,7 @@ pub enum VdbError {
 }
 
 /// A number of bytes in the unit that suits it.
-pub(super) fn memory_size(bytes: u64) -> String {
+pub(in crate::medium) fn memory_size(bytes: u64) -> String {
     const UNITS: [(&str, u32); 3] = [("GiB", 30), ("MiB", 20), ("KiB", 10)];
     match UNITS.iter().find(|(_, shift)| bytes >> shift > 0) {
         Some((unit, shift)) => format!("{:.1} {unit}", bytes as f64 / (1u64 << shift) as f64),

@@ -1,27 +1,27 @@
 //! A VDB file: recognising it, listing its grids, and reading any of them.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
+use super::contents::{Contents, MAGIC};
 use super::cursor::Cursor;
 use super::error::VdbError;
 use super::listing::Listing;
-use super::load::{StoredTree, load};
+use super::load::{Memory, StoredTree, load};
 use super::sparse::SparseGrid;
 use super::summary::GridSummary;
 use super::value::{GridValue, ValueType};
 use super::{Limits, VolumeSource};
 use crate::math::DAffine3;
 
-pub(super) const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=225;
 
 /// An OpenVDB file in memory, its grids listed and ready to be read.
 #[derive(Debug)]
 pub struct VdbFile {
     name: String,
-    bytes: Vec<u8>,
+    contents: Contents,
+    /// Bytes that were allocated for the file; none where the caller had them.
+    held_bytes: u64,
     listing: Listing,
     summaries: Vec<GridSummary>,
 }
@@ -33,20 +33,32 @@ impl VdbFile {
     /// When it cannot be read, is not an OpenVDB file, is of an unknown version, or is damaged
     /// before its first grid. A grid that cannot be used is no error here: its summary says why.
     pub fn open(path: &Path) -> Result<Self, VdbError> {
-        let name = path.display().to_string();
-        match read_vdb(path) {
-            Ok(Some(bytes)) => Self::list(name, bytes),
-            Ok(None) => Err(VdbError::NotVdb { file: name }),
-            Err(source) => Err(VdbError::Read { file: name, source }),
-        }
+        Self::open_within(path, &Limits::default())
     }
 
-    /// As [`VdbFile::open`], of bytes already in memory.
+    /// As [`VdbFile::open`], with a limit of one's own. The file's bytes count towards the limit of every
+    /// grid read from it, too.
+    ///
+    /// # Errors
+    /// As [`VdbFile::open`], and when the file is larger than `limits` allows.
+    pub fn open_within(path: &Path, limits: &Limits) -> Result<Self, VdbError> {
+        let name = path.display().to_string();
+        let contents = Contents::read(path, &name, limits)?;
+        let held_bytes = contents.bytes.len() as u64;
+        Self::list(name, contents, held_bytes)
+    }
+
+    /// As [`VdbFile::open`], of bytes already in memory. They count towards no limit.
     ///
     /// # Errors
     /// As [`VdbFile::open`].
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, VdbError> {
-        Self::list("the VDB in memory".into(), bytes)
+        Self::list("the VDB in memory".into(), Contents::of_bytes(bytes), 0)
+    }
+
+    /// A hash of all bytes of the file.
+    pub fn content_hash(&self) -> u64 {
+        self.contents.hash
     }
 
     /// Where the file breaks off, when not all of its grids could be listed.
@@ -70,8 +82,8 @@ impl VdbFile {
         self.load_as(index, limits, |value: V| value)
     }
 
-    fn list(name: String, bytes: Vec<u8>) -> Result<Self, VdbError> {
-        let mut cursor = Cursor::new(&bytes, 0);
+    fn list(name: String, contents: Contents, held_bytes: u64) -> Result<Self, VdbError> {
+        let mut cursor = Cursor::new(&contents.bytes, 0);
         if cursor.array("the header").ok() != Some(MAGIC) {
             return Err(VdbError::NotVdb { file: name });
         }
@@ -79,9 +91,10 @@ impl VdbFile {
         if !VERSIONS.contains(&version) {
             return Err(VdbError::Version { file: name, version });
         }
-        let listing = Listing::read(&mut cursor, &bytes).map_err(|fault| fault.in_file(&name))?;
+        let listing = Listing::read(&mut cursor, &contents.bytes);
+        let listing = listing.map_err(|fault| fault.in_file(&name))?;
         let summaries = listing.summaries();
-        Ok(Self { name, bytes, listing, summaries })
+        Ok(Self { name, contents, held_bytes, listing, summaries })
     }
 
     fn summary(&self, index: usize) -> Result<&GridSummary, VdbError> {
@@ -112,7 +125,8 @@ impl VdbFile {
         convert: impl Fn(V) -> O + Copy + Sync,
     ) -> Result<SparseGrid<O>, VdbError> {
         let (tree, index_to_world) = self.usable(index)?;
-        load(&self.bytes, tree, index_to_world, limits, convert)
+        let memory = Memory { held: self.held_bytes, limit: limits.max_bytes };
+        load(&self.contents.bytes, tree, index_to_world, memory, convert)
             .map_err(|fault| fault.in_grid(&self.name, &self.summaries[index].unique_name))
     }
 
@@ -153,17 +167,4 @@ impl VolumeSource for VdbFile {
             _ => Err(self.wrong_type(&self.summaries[index], "vectors")),
         }
     }
-}
-
-/// The file's bytes; none when it does not begin as a VDB does, so that no other large file is
-/// read.
-fn read_vdb(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
-    let mut file = File::open(path)?;
-    let mut bytes = Vec::new();
-    file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut bytes)?;
-    if bytes != MAGIC {
-        return Ok(None);
-    }
-    file.read_to_end(&mut bytes)?;
-    Ok(Some(bytes))
 }

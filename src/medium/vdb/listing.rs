@@ -196,7 +196,7 @@ impl ListedGrid {
         let value_type = ValueType::of_tree(&self.descriptor.tree).1?;
         let layout = Layout::new(value_type, self.descriptor.is_half, compression);
         let start = cursor.position();
-        let census = Census::take(cursor, &layout)?;
+        let census = Census::take(cursor, value_type, &layout)?;
         self.tree = Some(StoredTree { value_type, layout, start, end, census });
         Ok(())
     }

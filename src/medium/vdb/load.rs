@@ -1,15 +1,19 @@
 //! From the bytes of a tree to a [`SparseGrid`].
+//!
+//! Where a leaf's values are is known only from the lengths of those before, so one thread runs ahead to find
+//! them, a batch at a time, while the others unpack the batch before straight to its place.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::Limits;
 use super::block::{Block, Layout};
 use super::codec::Scratch;
 use super::cursor::Cursor;
 use super::fault::Fault;
 use super::sparse::{SparseGrid, Tile};
 use super::summary::{Census, memory_bytes};
-use super::tree::{LEAF_LEN, Node, ROOT_DIM, TreeVisitor, count_ones, leaf_block, walk};
+use super::tree::{LEAF_LEN, Node, ROOT_DIM, TreeVisitor, leaf_block, walk};
 use super::value::{GridValue, ValueType};
 use crate::math::DAffine3;
 
@@ -28,10 +32,21 @@ pub(super) struct StoredTree {
 impl StoredTree {
     /// Memory of the grid when its values are converted to some of `value_size` bytes.
     pub(super) fn memory_bytes(&self, value_size: usize) -> u64 {
-        memory_bytes(self.census.leaf_count(), self.census.active_tile_count, value_size)
+        memory_bytes(self.census.leaf_count(), self.census.tile_count(), value_size)
     }
 }
 
+/// What a grid may take.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Memory {
+    /// Bytes taken already.
+    pub held: u64,
+    /// Bytes allowed, those taken included.
+    pub limit: u64,
+}
+
+/// Leaves found ahead of their unpacking.
+const LEAVES_A_BATCH: usize = 4096;
 /// Leaves a thread takes at once: one alone is too little work.
 const LEAVES_A_TASK: usize = 64;
 
@@ -40,80 +55,118 @@ pub(super) fn load<V: GridValue, O: Copy + Default + Send + Sync>(
     bytes: &[u8],
     tree: &StoredTree,
     index_to_world: DAffine3,
-    limits: &Limits,
+    memory: Memory,
     convert: impl Fn(V) -> O + Copy + Sync,
 ) -> Result<SparseGrid<O>, Fault> {
-    let needed = tree.memory_bytes(size_of::<O>());
+    let needed = memory.held.saturating_add(tree.memory_bytes(size_of::<O>()));
+    if needed > memory.limit {
+        return Err(Fault::TooLarge { needed, limit: memory.limit });
+    }
+    let leaf_count = tree.census.leaf_count();
     let mut builder = Builder {
         layout: &tree.layout,
-        budget: Budget::new(needed, limits)?,
         convert,
         background: V::default(),
         grid: SparseGrid {
             background: O::default(),
             index_to_world,
-            leaves: Vec::new(),
-            masks: Vec::new(),
+            leaves: with_room(leaf_count, needed)?,
+            masks: with_room(leaf_count, needed)?,
             values: Vec::new(),
-            tiles: Vec::new(),
+            tiles: with_room(tree.census.tile_count(), needed)?,
         },
         node_values: Vec::new(),
         scratch: Scratch::default(),
     };
-    builder.reserve(&tree.census)?;
-
     let bytes = bytes.get(..tree.end).unwrap_or(bytes);
     let mut cursor = Cursor::new(bytes, tree.start);
     walk(&mut cursor, &tree.layout, &mut builder)?;
     let Builder { mut grid, background, .. } = builder;
 
-    // Where each leaf's values are is known only from the lengths of those before: find all, then
-    // unpack in parallel.
-    let blocks = grid
-        .masks
-        .iter()
-        .map(|mask| leaf_block(&mut cursor, &tree.layout, count_ones(mask)))
-        .collect::<Result<Vec<Block<'_>>, Fault>>()?;
-    grid.values.resize(grid.leaves.len() * LEAF_LEN, O::default());
-    grid.values
-        .par_chunks_exact_mut(LEAF_LEN)
-        .zip(&grid.masks)
-        .zip(&blocks)
-        .with_min_len(LEAVES_A_TASK)
-        .try_for_each_init(Scratch::default, |scratch, ((values, mask), block)| {
-            block.unpack(&tree.layout, mask, background, convert, values, scratch)
-        })?;
+    let unpacking = Unpacking { layout: &tree.layout, masks: &grid.masks, background, convert };
+    let mut values = with_room(leaf_count, needed)?;
+    unpacking.unpack_all(cursor, &tree.census.leaf_active_counts, &mut values)?;
+    grid.values = values.into_flattened();
     Ok(grid)
 }
 
-/// Memory promised and memory allowed.
-#[derive(Debug)]
-struct Budget {
-    needed: u64,
-    limit: u64,
+/// An empty vector with room for `len` elements, or the error that there is none.
+fn with_room<T>(len: u64, needed: u64) -> Result<Vec<T>, Fault> {
+    let mut vector = Vec::new();
+    match usize::try_from(len).map(|len| vector.try_reserve_exact(len)) {
+        Ok(Ok(())) => Ok(vector),
+        _ => Err(Fault::OutOfMemory { needed }),
+    }
 }
 
-impl Budget {
-    fn new(needed: u64, limits: &Limits) -> Result<Self, Fault> {
-        let mut budget = Self { needed: 0, limit: limits.max_bytes };
-        budget.spend(needed)?;
-        Ok(budget)
-    }
+/// What the values of all leaves have in common.
+struct Unpacking<'a, V, C> {
+    layout: &'a Layout,
+    masks: &'a [[u64; 8]],
+    background: V,
+    convert: C,
+}
 
-    fn spend(&mut self, bytes: u64) -> Result<(), Fault> {
-        self.needed = self.needed.saturating_add(bytes);
-        if self.needed > self.limit {
-            return Err(Fault::TooLarge { needed: self.needed, limit: self.limit });
+impl<V: GridValue, C> Unpacking<'_, V, C> {
+    /// Unpacks the leaves whose values begin at the cursor.
+    fn unpack_all<'f, O: Copy + Default + Send + Sync>(
+        &self,
+        mut cursor: Cursor<'f>,
+        active_counts: &[u16],
+        values: &mut Vec<[O; LEAF_LEN]>,
+    ) -> Result<(), Fault>
+    where
+        C: Fn(V) -> O + Copy + Sync,
+    {
+        let mut find = |active_counts: &[u16], batch: &mut Vec<Block<'f>>| {
+            batch.clear();
+            for &count in active_counts {
+                batch.push(leaf_block(&mut cursor, self.layout, usize::from(count))?);
+            }
+            Ok(())
+        };
+        let mut ahead = active_counts.chunks(LEAVES_A_BATCH);
+        let (mut batch, mut next) = (Vec::new(), Vec::new());
+        find(ahead.next().unwrap_or(&[]), &mut batch)?;
+        while !batch.is_empty() {
+            let (found, unpacked) = rayon::join(
+                || find(ahead.next().unwrap_or(&[]), &mut next),
+                || self.unpack_batch(&batch, values),
+            );
+            unpacked?;
+            found?;
+            std::mem::swap(&mut batch, &mut next);
         }
         Ok(())
     }
 
-    /// Room for more in a vector, or the error that there is none.
-    fn reserve<T>(&self, vector: &mut Vec<T>, additional: u64) -> Result<(), Fault> {
-        let out_of_memory = Fault::OutOfMemory { needed: self.needed };
-        match usize::try_from(additional).map(|additional| vector.try_reserve(additional)) {
-            Ok(Ok(())) => Ok(()),
-            _ => Err(out_of_memory),
+    /// Unpacks the leaves that follow those unpacked. The fault, if any, is that of the first leaf that has one.
+    fn unpack_batch<O: Copy + Default + Send + Sync>(
+        &self,
+        batch: &[Block<'_>],
+        values: &mut Vec<[O; LEAF_LEN]>,
+    ) -> Result<(), Fault>
+    where
+        C: Fn(V) -> O + Copy + Sync,
+    {
+        let masks = &self.masks[values.len()..][..batch.len()];
+        let unpack = |block: &Block<'_>, mask: &[u64; 8], scratch: &mut Scratch| {
+            let mut leaf = [O::default(); LEAF_LEN];
+            block
+                .unpack(self.layout, mask, self.background, self.convert, &mut leaf, scratch)
+                .map(|()| leaf)
+        };
+        let first_fault = AtomicUsize::new(usize::MAX);
+        let leaves = batch.par_iter().zip(masks).enumerate().with_min_len(LEAVES_A_TASK);
+        values.par_extend(leaves.map_init(Scratch::default, |scratch, (number, (block, mask))| {
+            unpack(block, mask, scratch).unwrap_or_else(|_| {
+                first_fault.fetch_min(number, Ordering::Relaxed);
+                [O::default(); LEAF_LEN]
+            })
+        }));
+        match first_fault.into_inner() {
+            usize::MAX => Ok(()),
+            number => unpack(&batch[number], &masks[number], &mut Scratch::default()).map(drop),
         }
     }
 }
@@ -121,23 +174,11 @@ impl Budget {
 /// Collects leaves and tiles.
 struct Builder<'l, V, O, C> {
     layout: &'l Layout,
-    budget: Budget,
     convert: C,
     background: V,
     grid: SparseGrid<O>,
     node_values: Vec<V>,
     scratch: Scratch,
-}
-
-impl<V, O, C> Builder<'_, V, O, C> {
-    fn reserve(&mut self, census: &Census) -> Result<(), Fault> {
-        let Self { grid, budget, .. } = self;
-        let leaf_count = census.leaf_count();
-        budget.reserve(&mut grid.leaves, leaf_count)?;
-        budget.reserve(&mut grid.masks, leaf_count)?;
-        budget.reserve(&mut grid.values, leaf_count.saturating_mul(LEAF_LEN as u64))?;
-        budget.reserve(&mut grid.tiles, census.active_tile_count)
-    }
 }
 
 impl<V: GridValue, O: Copy, C: Fn(V) -> O> Builder<'_, V, O, C> {
@@ -160,49 +201,20 @@ impl<V: GridValue, O: Copy, C: Fn(V) -> O> TreeVisitor for Builder<'_, V, O, C> 
 
     fn root_tile(&mut self, origin: [i32; 3], value: &[u8], active: bool) -> Result<(), Fault> {
         let value = V::from_bytes(value);
-        if !active {
-            if value.is_same(self.background) {
-                return Ok(());
-            }
-            self.budget.spend(size_of::<Tile<O>>() as u64)?;
+        if !active && value.is_same(self.background) {
+            return Ok(());
         }
         self.push_tile(origin, ROOT_DIM, value, active);
         Ok(())
     }
 
     fn node(&mut self, node: &Node<'_>) -> Result<(), Fault> {
-        let all_inactive_are_background = node.block.has_only_background_inactive(self.layout);
-        if all_inactive_are_background && node.active_tiles().next().is_none() {
-            return Ok(());
-        }
         let mut values = std::mem::take(&mut self.node_values);
-        values.resize(node.level.len(), V::default());
         let background = self.background;
-        node.block.unpack(
-            self.layout,
-            &node.active,
-            background,
-            |value| value,
-            &mut values,
-            &mut self.scratch,
-        )?;
-
-        for offset in node.active_tiles() {
-            self.push_tile(node.child_origin(offset), node.level.child_dim, values[offset], true);
-        }
-        if !all_inactive_are_background {
-            let inactive =
-                || node.inactive_tiles().filter(|&offset| !values[offset].is_same(background));
-            let count = inactive().count() as u64;
-            self.budget.spend(count * size_of::<Tile<O>>() as u64)?;
-            self.budget.reserve(&mut self.grid.tiles, count)?;
-            for offset in inactive() {
-                self.push_tile(
-                    node.child_origin(offset),
-                    node.level.child_dim,
-                    values[offset],
-                    false,
-                );
+        if node.unpack_tiles(self.layout, background, &mut values, &mut self.scratch)? {
+            for (offset, active) in node.tiles_beside(background, &values) {
+                let origin = node.child_origin(offset);
+                self.push_tile(origin, node.level.child_dim, values[offset], active);
             }
         }
         self.node_values = values;

@@ -17,6 +17,7 @@ mod block;
 mod blosc;
 mod codec;
 mod crop;
+mod contents;
 mod cursor;
 mod descriptor;
 mod error;
@@ -37,10 +38,10 @@ mod write;
 
 pub use crop::{CropError, crop};
 pub use error::VdbError;
+pub(super) use error::memory_size;
 pub use file::VdbFile;
-pub use find::{find_density, find_density_or_level_set};
+pub use find::{find_density, find_density_or_level_set, find_grid};
 pub use fog::fog_of_level_set;
-pub use find::{find_density, find_grid};
 pub use metadata::MetadataValue;
 pub use sanitize::{SanitizeCount, sanitize_density};
 pub use sparse::{SparseGrid, Tile};
@@ -74,10 +75,12 @@ pub trait VolumeSource {
     fn load_vector(&self, index: usize, limits: &Limits) -> Result<SparseGrid<[f32; 3]>, VdbError>;
 }
 
-/// What reading a grid may cost.
+/// What reading a grid may cost, from the bytes of its file to the voxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Memory of one loaded grid \[bytes\].
+    /// Memory of one loaded grid and of what it is made from: of the file's bytes and the voxels while they
+    /// are read, and of the voxels and the bricks while a
+    /// [`DensityGrid`](crate::medium::grid::DensityGrid) is built \[bytes\].
     pub max_bytes: u64,
 }
 

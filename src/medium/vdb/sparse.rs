@@ -20,6 +20,16 @@ pub struct SparseGrid<T> {
     pub tiles: Vec<Tile<T>>,
 }
 
+impl<T> SparseGrid<T> {
+    /// Memory held \[bytes\].
+    pub fn memory_bytes(&self) -> u64 {
+        let leaves = self.leaves.capacity() * size_of::<[i32; 3]>()
+            + self.masks.capacity() * size_of::<[u64; 8]>()
+            + self.values.capacity() * size_of::<T>();
+        (leaves + self.tiles.capacity() * size_of::<Tile<T>>()) as u64
+    }
+}
+
 /// A constant cube of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile<T> {

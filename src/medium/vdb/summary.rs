@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::block::Layout;
+use super::codec::Scratch;
 use super::cursor::Cursor;
 use super::fault::Fault;
 use super::metadata::MetadataValue;
@@ -73,7 +74,7 @@ pub struct GridSummary {
     pub active_tile_count: u64,
     /// Leaves of 8^3 voxels.
     pub leaf_count: u64,
-    /// Memory of the grid when loaded \[bytes\]; inactive tiles come on top, where there are any.
+    /// Memory of the grid when loaded \[bytes\].
     pub memory_bytes: u64,
     /// Further metadata by name, up to 64 KiB of it.
     pub metadata: BTreeMap<String, MetadataValue>,
@@ -100,6 +101,8 @@ impl GridSummary {
 pub(super) struct Census {
     /// Bytes of the background value.
     background: Vec<u8>,
+    /// Inactive tiles whose value is not the background.
+    inactive_tile_count: u64,
     pub active_voxel_count: u64,
     pub active_tile_count: u64,
     pub bbox: Option<IndexBox>,
@@ -109,10 +112,29 @@ pub(super) struct Census {
 
 impl Census {
     /// Counts the tree at the cursor and leaves the cursor behind its topology.
-    pub(super) fn take(cursor: &mut Cursor<'_>, layout: &Layout) -> Result<Self, Fault> {
-        let mut census = Self::default();
-        walk(cursor, layout, &mut census)?;
-        Ok(census)
+    pub(super) fn take(
+        cursor: &mut Cursor<'_>,
+        value_type: ValueType,
+        layout: &Layout,
+    ) -> Result<Self, Fault> {
+        match value_type {
+            ValueType::Float => Count::<f32>::of(cursor, layout),
+            ValueType::Double => Count::<f64>::of(cursor, layout),
+            ValueType::Int32 => Count::<i32>::of(cursor, layout),
+            ValueType::Int64 => Count::<i64>::of(cursor, layout),
+            ValueType::Vec3s => Count::<[f32; 3]>::of(cursor, layout),
+            ValueType::Vec3d => Count::<[f64; 3]>::of(cursor, layout),
+            ValueType::Vec3i | ValueType::Bool | ValueType::Mask => {
+                let mut census = Self::default();
+                walk(cursor, layout, &mut Unread(&mut census))?;
+                Ok(census)
+            }
+        }
+    }
+
+    /// Number of tiles a loaded grid holds.
+    pub(super) fn tile_count(&self) -> u64 {
+        self.active_tile_count + self.inactive_tile_count
     }
 
     /// Number of leaves.
@@ -142,35 +164,99 @@ impl Census {
         self.active_voxel_count = self.active_voxel_count.saturating_add(volume);
         self.extend(IndexBox::cube(origin, dim));
     }
+
+    fn count_active_tiles(&mut self, node: &Node<'_>) {
+        for offset in node.active_tiles() {
+            self.count_tile(node.child_origin(offset), node.level.child_dim);
+        }
+    }
+
+    fn count_leaf(&mut self, origin: [i32; 3], mask: &[u64; 8]) {
+        let active_count = count_ones(mask);
+        self.leaf_active_counts.push(active_count as u16);
+        self.active_voxel_count = self.active_voxel_count.saturating_add(active_count as u64);
+        if let Some(bbox) = active_bounds(origin, mask) {
+            self.extend(bbox);
+        }
+    }
 }
 
-impl TreeVisitor for Census {
-    fn background(&mut self, value: &[u8]) -> Result<(), Fault> {
-        self.background = value.to_vec();
+/// Counts a tree whose values are never read.
+struct Unread<'c>(&'c mut Census);
+
+impl TreeVisitor for Unread<'_> {
+    fn background(&mut self, _value: &[u8]) -> Result<(), Fault> {
         Ok(())
     }
 
     fn root_tile(&mut self, origin: [i32; 3], _value: &[u8], active: bool) -> Result<(), Fault> {
         if active {
-            self.count_tile(origin, ROOT_DIM);
+            self.0.count_tile(origin, ROOT_DIM);
         }
         Ok(())
     }
 
     fn node(&mut self, node: &Node<'_>) -> Result<(), Fault> {
-        for offset in node.active_tiles() {
-            self.count_tile(node.child_origin(offset), node.level.child_dim);
+        self.0.count_active_tiles(node);
+        Ok(())
+    }
+
+    fn leaf(&mut self, origin: [i32; 3], mask: [u64; 8]) -> Result<(), Fault> {
+        self.0.count_leaf(origin, &mask);
+        Ok(())
+    }
+}
+
+/// Counts a tree of values of type `V`, and unpacks those of its tiles where it must to tell them from the
+/// background.
+struct Count<'l, V> {
+    census: Census,
+    layout: &'l Layout,
+    background: V,
+    node_values: Vec<V>,
+    scratch: Scratch,
+}
+
+impl<V: GridValue> Count<'_, V> {
+    fn of(cursor: &mut Cursor<'_>, layout: &Layout) -> Result<Census, Fault> {
+        let census = Census::default();
+        let (background, node_values, scratch) = (V::default(), Vec::new(), Scratch::default());
+        let mut count = Count { census, layout, background, node_values, scratch };
+        walk(cursor, layout, &mut count)?;
+        Ok(count.census)
+    }
+}
+
+impl<V: GridValue> TreeVisitor for Count<'_, V> {
+    fn background(&mut self, value: &[u8]) -> Result<(), Fault> {
+        self.census.background = value.to_vec();
+        self.background = V::from_bytes(value);
+        Ok(())
+    }
+
+    fn root_tile(&mut self, origin: [i32; 3], value: &[u8], active: bool) -> Result<(), Fault> {
+        if active {
+            self.census.count_tile(origin, ROOT_DIM);
+        } else if !V::from_bytes(value).is_same(self.background) {
+            self.census.inactive_tile_count += 1;
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, node: &Node<'_>) -> Result<(), Fault> {
+        self.census.count_active_tiles(node);
+        let Self { census, layout, background, node_values, scratch } = self;
+        if !node.block.has_only_background_inactive(layout)
+            && node.unpack_tiles(layout, *background, node_values, scratch)?
+        {
+            let tiles = node.tiles_beside(*background, node_values);
+            census.inactive_tile_count += tiles.filter(|(_, active)| !active).count() as u64;
         }
         Ok(())
     }
 
     fn leaf(&mut self, origin: [i32; 3], mask: [u64; 8]) -> Result<(), Fault> {
-        let active_count = count_ones(&mask);
-        self.leaf_active_counts.push(active_count as u16);
-        self.active_voxel_count = self.active_voxel_count.saturating_add(active_count as u64);
-        if let Some(bbox) = active_bounds(origin, &mask) {
-            self.extend(bbox);
-        }
+        self.census.count_leaf(origin, &mask);
         Ok(())
     }
 }

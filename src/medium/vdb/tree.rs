@@ -6,9 +6,10 @@
 use std::collections::HashSet;
 
 use super::block::{Block, Layout};
+use super::codec::Scratch;
 use super::cursor::Cursor;
 use super::fault::Fault;
-use super::value::ValueType;
+use super::value::{GridValue, ValueType};
 
 /// Voxels of a leaf.
 pub(super) const LEAF_LEN: usize = 512;
@@ -89,9 +90,36 @@ impl<'a> Node<'a> {
         bits(self.active.iter().zip(&self.children).map(|(active, child)| active & !child))
     }
 
-    /// Offsets of the inactive tiles.
-    pub(super) fn inactive_tiles(&self) -> impl Iterator<Item = usize> {
-        bits(self.active.iter().zip(&self.children).map(|(active, child)| !active & !child))
+    /// Unpacks the values of the tiles, unless every tile is inactive and of the background's value. Says
+    /// whether it did.
+    pub(super) fn unpack_tiles<V: GridValue>(
+        &self,
+        layout: &Layout,
+        background: V,
+        values: &mut Vec<V>,
+        scratch: &mut Scratch,
+    ) -> Result<bool, Fault> {
+        if self.block.has_only_background_inactive(layout) && self.active_tiles().next().is_none() {
+            return Ok(false);
+        }
+        values.resize(self.level.len(), V::default());
+        self.block.unpack(layout, &self.active, background, |value| value, values, scratch)?;
+        Ok(true)
+    }
+
+    /// Offsets of the tiles that are active, then of those that are not but differ from the background, and
+    /// whether they are active.
+    pub(super) fn tiles_beside<V: GridValue>(
+        &self,
+        background: V,
+        values: &[V],
+    ) -> impl Iterator<Item = (usize, bool)> {
+        let inactive =
+            bits(self.active.iter().zip(&self.children).map(|(active, child)| !active & !child));
+        let differing = inactive.filter(move |&offset| !values[offset].is_same(background));
+        self.active_tiles()
+            .map(|offset| (offset, true))
+            .chain(differing.map(|offset| (offset, false)))
     }
 }
 
@@ -198,11 +226,14 @@ pub(super) fn count_ones(words: &[u64]) -> usize {
 
 /// Places of the bits set.
 fn bits(words: impl Iterator<Item = u64>) -> impl Iterator<Item = usize> {
-    words.enumerate().flat_map(|(index, word)| {
-        std::iter::successors((word != 0).then_some(word), |rest| {
-            let rest = rest & (rest - 1);
-            (rest != 0).then_some(rest)
-        })
-        .map(move |rest| 64 * index + rest.trailing_zeros() as usize)
+    words.enumerate().flat_map(|(index, word)| bits_of(word).map(move |bit| 64 * index + bit))
+}
+
+/// Places of the bits set in one word.
+pub(super) fn bits_of(word: u64) -> impl Iterator<Item = usize> {
+    std::iter::successors((word != 0).then_some(word), |rest| {
+        let rest = rest & (rest - 1);
+        (rest != 0).then_some(rest)
     })
+    .map(|rest| rest.trailing_zeros() as usize)
 }

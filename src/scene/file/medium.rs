@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::bounds::BoundsSection;
 use super::phase::PhaseSection;
 use super::table::{OneOrThree, Table};
 use super::transform::TransformSection;
 use crate::math::Rgb;
+use crate::medium::grid::BrickPrecision;
 use crate::scene::error::Problem;
 
 /// `[medium]`: what scatters and absorbs; one of two kinds. All it is surrounded by is empty space.
@@ -33,6 +34,7 @@ pub enum MediumSection {
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
     /// | `sdf_to_fog` | boolean | | false | | fill a level set with fog: density 0 on its surface, 1 at depth |
+    /// | `precision` | text | | `"single"` | | `"single"` or `"half"`: see [`BrickPrecision`] |
     /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
     /// | `phase` | table | | isotropic | | see [`PhaseSection`] |
     /// | `transform` | table | | identity | | see [`TransformSection`] |
@@ -45,6 +47,8 @@ pub enum MediumSection {
         density: Option<String>,
         density_scale: f64,
         sdf_to_fog: bool,
+        #[serde(serialize_with = "serialize_precision")]
+        precision: BrickPrecision,
         albedo: Rgb,
         phase: PhaseSection,
         transform: TransformSection,
@@ -58,9 +62,20 @@ const KINDS: [(&str, &[&str]); 2] = [
     ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
     (
         "vdb",
-        &["kind", "file", "density", "density_scale", "sdf_to_fog", "albedo", "phase", "transform"],
+        &["kind", "file", "density", "density_scale", "sdf_to_fog", "precision", "albedo", "phase", "transform"],
     ),
 ];
+
+const PRECISIONS: [(&str, BrickPrecision); 2] =
+    [("single", BrickPrecision::Single), ("half", BrickPrecision::Half)];
+
+fn serialize_precision<S: Serializer>(
+    precision: &BrickPrecision,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let words = PRECISIONS.iter().filter(|(_, known)| known == precision).map(|(word, _)| word);
+    serializer.collect_str(&words.copied().collect::<String>())
+}
 
 impl MediumSection {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
@@ -93,6 +108,7 @@ impl MediumSection {
             density: table.get("density")?,
             density_scale,
             sdf_to_fog: table.get_or("sdf_to_fog", false)?,
+            precision: table.choose("precision", &PRECISIONS)?.unwrap_or_default(),
             albedo: read_albedo(table)?,
             phase: PhaseSection::read(table)?,
             transform: TransformSection::read(table)?,
