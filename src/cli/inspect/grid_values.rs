@@ -1,6 +1,6 @@
 //! Least, greatest and summed value of a grid's active voxels.
 
-use photonvdb::medium::vdb::{GridSummary, GridValue, Limits, SparseGrid, VdbError, VdbFile};
+use photonvdb::medium::vdb::{GridSummary, GridValue, Limits, SparseGrid, VdbError, VdbFile, f16};
 use serde::Serialize;
 
 /// Figures over all active voxels, those in tiles included, that are finite. `None`: there are none, or the grid
@@ -25,6 +25,7 @@ pub fn read_values(
     }
     match summary.value_type.as_str() {
         "double" => figures(file, index, |value: f64| value),
+        "half" => figures(file, index, |value: f16| value.into()),
         "int32" => figures(file, index, |value: i32| value.into()),
         "int64" => figures(file, index, |value: i64| value as f64),
         _ => figures(file, index, |value: f32| value.into()),

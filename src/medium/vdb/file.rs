@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use half::f16;
+
 use super::cursor::Cursor;
 use super::error::VdbError;
 use super::listing::Listing;
@@ -139,6 +141,7 @@ impl VolumeSource for VdbFile {
         match self.usable(index)?.0.value_type {
             ValueType::Float => self.load_as(index, limits, |value: f32| value),
             ValueType::Double => self.load_as(index, limits, |value: f64| value as f32),
+            ValueType::Half => self.load_as(index, limits, f16::to_f32),
             ValueType::Int32 => self.load_as(index, limits, |value: i32| value as f32),
             ValueType::Int64 => self.load_as(index, limits, |value: i64| value as f32),
             _ => Err(self.wrong_type(&self.summaries[index], "numbers")),

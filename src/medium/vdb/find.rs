@@ -60,7 +60,8 @@ fn check_density(source: &dyn VolumeSource, grid: &GridSummary) -> Result<(), Vd
 
 /// The only grid of real numbers that could be a density, if there is exactly one.
 fn only_float(grids: &[GridSummary]) -> Option<usize> {
-    let is_real = |grid: &GridSummary| matches!(grid.value_type.as_str(), "float" | "double");
+    let is_real =
+        |grid: &GridSummary| matches!(grid.value_type.as_str(), "float" | "double" | "half");
     let mut candidates = (0..grids.len()).filter(|&index| {
         let grid = &grids[index];
         is_real(grid) && grid.unusable.is_none() && !grid.is_level_set()

@@ -99,7 +99,7 @@ impl Listing {
             unique_name: grid.descriptor.shown_name(),
             value_type: owner.value_type.clone(),
             class: grid.metadata.class.clone().unwrap_or_else(|| "unknown".into()),
-            half: owner.descriptor.is_half,
+            half: owner.metadata.is_half,
             compression: owner.compression.map_or_else(String::new, Compression::words),
             map: grid
                 .transform
@@ -193,7 +193,7 @@ impl ListedGrid {
             return Ok(());
         }
         let value_type = ValueType::of_tree(&self.descriptor.tree).1?;
-        let layout = Layout::new(value_type, self.descriptor.is_half, compression);
+        let layout = Layout::new(value_type, self.metadata.is_half, compression);
         let start = cursor.position();
         let census = Census::take(cursor, &layout)?;
         self.tree = Some(StoredTree { value_type, layout, start, end, census });

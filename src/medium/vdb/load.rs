@@ -9,7 +9,7 @@ use super::cursor::Cursor;
 use super::fault::Fault;
 use super::sparse::{SparseGrid, Tile};
 use super::summary::{Census, memory_bytes};
-use super::tree::{LEAF_LEN, Node, ROOT_DIM, TreeVisitor, count_ones, leaf_block, walk};
+use super::tree::{LEAF_LEN, Node, ROOT_DIM, TreeVisitor, leaf_block, walk};
 use super::value::{GridValue, ValueType};
 use crate::math::DAffine3;
 
@@ -72,7 +72,7 @@ pub(super) fn load<V: GridValue, O: Copy + Default + Send + Sync>(
     let blocks = grid
         .masks
         .iter()
-        .map(|mask| leaf_block(&mut cursor, &tree.layout, count_ones(mask)))
+        .map(|mask| leaf_block(&mut cursor, &tree.layout, mask))
         .collect::<Result<Vec<Block<'_>>, Fault>>()?;
     grid.values.resize(grid.leaves.len() * LEAF_LEN, O::default());
     grid.values

@@ -30,6 +30,9 @@ mod transform;
 mod tree;
 mod value;
 
+/// The 16-bit number of half grids.
+pub use half::f16;
+
 pub use error::VdbError;
 pub use file::VdbFile;
 pub use find::find_density;
