@@ -16,7 +16,7 @@ use super::value::{GridValue, ValueType};
 use super::{Limits, VolumeSource};
 use crate::math::DAffine3;
 
-const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
+pub(super) const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=225;
 
 /// An OpenVDB file in memory, its grids listed and ready to be read.
@@ -70,6 +70,12 @@ impl VdbFile {
             return Err(self.wrong_type(summary, V::WORD));
         }
         self.load_as(index, limits, |value: V| value)
+    }
+
+    /// The bytes of the file and what was found in them.
+    #[cfg(feature = "vdb-rs")]
+    pub(super) fn parts(&self) -> (&[u8], &Listing) {
+        (&self.bytes, &self.listing)
     }
 
     fn list(name: String, bytes: Vec<u8>) -> Result<Self, VdbError> {

@@ -69,6 +69,12 @@ impl Listing {
         self.grids.iter().map(|grid| self.summary(grid)).collect()
     }
 
+    /// The entry of a grid.
+    #[cfg(feature = "vdb-rs")]
+    pub(super) fn descriptor(&self, index: usize) -> Option<&Descriptor> {
+        self.grids.get(index).map(|grid| &grid.descriptor)
+    }
+
     /// The tree of a grid, its own or the one it shares, when it can be read.
     pub(super) fn tree(&self, index: usize) -> Option<&StoredTree> {
         self.owner(self.grids.get(index)?).ok()?.readable_tree().ok()

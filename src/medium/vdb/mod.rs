@@ -29,6 +29,8 @@ mod summary;
 mod transform;
 mod tree;
 mod value;
+#[cfg(feature = "vdb-rs")]
+mod vdb_rs_file;
 
 /// The 16-bit number of half grids.
 pub use half::f16;
@@ -40,6 +42,8 @@ pub use sanitize::{SanitizeCount, sanitize_density};
 pub use sparse::{SparseGrid, Tile};
 pub use summary::{GridSummary, IndexBox};
 pub use value::GridValue;
+#[cfg(feature = "vdb-rs")]
+pub use vdb_rs_file::VdbRsFile;
 
 /// A file of volumes, whatever reads it.
 pub trait VolumeSource {
