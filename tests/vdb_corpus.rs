@@ -9,7 +9,7 @@ mod streams;
 #[path = "vdb/support/mod.rs"]
 mod support;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use photonvdb::medium::vdb::{Limits, VdbFile, VolumeSource, find_density, sanitize_density};
 use support::answer::check_file;

@@ -21,6 +21,8 @@ use super::value::ValueType;
 use crate::math::DAffine3;
 
 const UUID_LEN: usize = 36;
+/// Grids listed. Sound files hold some hundreds at the most; an entry of 36 bytes would become a summary of a thousand.
+const MAX_GRIDS: usize = 1 << 13;
 const WHAT: &str = "the header";
 
 /// The grids of a file.
@@ -45,7 +47,11 @@ impl Listing {
 
         let mut grids = Vec::new();
         let mut damage = None;
-        for _ in 0..count {
+        for index in 0..count as usize {
+            if index == MAX_GRIDS {
+                damage = Some(Fault::invalid(format!("it claims to hold {count} grids")));
+                break;
+            }
             let next = ListedGrid::read(cursor, bytes, has_offsets, &mut grids);
             if let Err(fault) = next {
                 damage = Some(fault);

@@ -5,7 +5,7 @@
 //! (file versions 222 to 225). The modules follow the order of the bytes:
 //!
 //! file and descriptors -> metadata -> transform -> tree (topology) -> block (values of a node) ->
-//! codec, blosc.
+//! codec, blosc. `VdbRsFile` (feature `vdb-rs`) is a second reader, for some of the grids.
 //!
 //! A file is data from a stranger: every length and offset is checked before it is used, nothing
 //! recurses, and the memory a grid takes is computed from its topology and compared with [`Limits`]
