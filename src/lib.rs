@@ -57,6 +57,11 @@
 //! SI units; right-handed world space; linear RGB with Rec.709 primaries; radians in code, degrees in files. A stored
 //! photon's direction is its direction of travel, its power that before the albedo. Equal seeds give equal
 //! results, byte for byte, for any number of threads.
+//!
+//! # Features
+//!
+//! - `vdb-rs` (off): `medium::vdb::VdbRsFile`, which has the public crate `vdb-rs` read the grids it reads right. Needs a C
+//!   compiler. The built-in [`VdbFile`](medium::vdb::VdbFile) reads these and all others.
 
 pub mod camera;
 pub mod emission;

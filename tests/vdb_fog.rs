@@ -1,6 +1,7 @@
 //! Level sets filled with fog, bit for bit as `tools::sdfToFogVolume` of the OpenVDB library fills them. Its answers,
 //! and the program that asked for them, are in `tests/vdb_fog/`.
 
+#[allow(dead_code)]
 #[path = "vdb/support/hash.rs"]
 mod hash;
 

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use photonvdb::files::write_beside;
 use photonvdb::medium::vdb::{
-    GridClass, GridSummary, GridToWrite, SparseGrid, ValuesToWrite, VdbError, VdbFile,
-    VdbWriter, VolumeSource, WrittenGrid, crop, find_grid,
+    GridClass, GridSummary, GridToWrite, SparseGrid, ValuesToWrite, VdbError, VdbFile, VdbWriter,
+    VolumeSource, WrittenGrid, crop, find_grid,
 };
 
 use super::args::ConvertArguments;

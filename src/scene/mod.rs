@@ -81,8 +81,7 @@ impl Scene {
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
         let mut warnings = Vec::new();
         let mut hashes = hash::FileHashes::new();
-        let medium =
-            build::medium(&file.medium, directory, rules, &mut warnings, &mut hashes)?;
+        let medium = build::medium(&file.medium, directory, rules, &mut warnings, &mut hashes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))

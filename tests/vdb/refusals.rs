@@ -99,7 +99,7 @@ fn grids_that_are_not_of_numbers_are_refused_by_name() {
 
 #[test]
 fn vectors_are_not_numbers_and_numbers_no_vectors() {
-    let velocity = open("vec3s_only");
+    let velocity = open("instanced_vec3s");
     let error = message(velocity.load_scalar(0, &Limits::default()));
     assert!(error.contains("holds vec3s values where numbers are wanted"), "{error}");
     assert_eq!(message(find_density(&velocity, "velocity", true)), error);
@@ -193,13 +193,13 @@ fn an_unknown_compression_or_transform_is_named() {
 
 #[test]
 fn memory_is_compared_with_the_limit_before_it_is_taken() {
-    let file = open("vec3s_only");
+    let file = open("type_double");
     let needed = file.grids()[0].memory_bytes;
-    let grid = file.load_vector(0, &Limits { max_bytes: needed }).unwrap();
-    assert_eq!(needed, 179 * (512 * 12 + 64 + 12));
-    assert_eq!(grid.leaves.len(), 179);
-    let error = message(file.load_vector(0, &Limits { max_bytes: needed - 1 }));
-    assert!(error.contains("needs 1.1 MiB of memory and the limit is 1.1 MiB; raise"), "{error}");
+    let grid = file.load_scalar(0, &Limits { max_bytes: needed }).unwrap();
+    assert_eq!(needed, 38 * (512 * 4 + 64 + 12));
+    assert_eq!(grid.leaves.len(), 38);
+    let error = message(file.load_scalar(0, &Limits { max_bytes: needed - 1 }));
+    assert!(error.contains("needs 78.8 KiB of memory and the limit is 78.8 KiB; raise"), "{error}");
 }
 
 /// Two edits of a Blosc frame that make a reader trusting it write past its buffer.

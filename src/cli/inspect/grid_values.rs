@@ -1,6 +1,6 @@
 //! Least, greatest, summed and mean value of a grid's active voxels.
 
-use photonvdb::medium::vdb::{GridSummary, GridValue, Limits, SparseGrid, VdbError, VdbFile};
+use photonvdb::medium::vdb::{GridSummary, GridValue, Limits, SparseGrid, VdbError, VdbFile, f16};
 use serde::Serialize;
 
 /// Figures over all active voxels, those in tiles included, that are finite: one number of a grid of numbers,
@@ -37,6 +37,7 @@ pub fn read_values(
         _ if summary.unusable.is_some() => Ok(GridValues::default()),
         "float" => Ok(Sums::of(file, index, limits, |v: f32| [v.into()])?.values(scalar)),
         "double" => Ok(Sums::of(file, index, limits, |v: f64| [v])?.values(scalar)),
+        "half" => Ok(Sums::of(file, index, limits, |v: f16| [v.into()])?.values(scalar)),
         "int32" => Ok(Sums::of(file, index, limits, |v: i32| [v.into()])?.values(scalar)),
         "int64" => Ok(Sums::of(file, index, limits, |v: i64| [v as f64])?.values(scalar)),
         "vec3s" => {

@@ -15,8 +15,6 @@ pub(super) struct Descriptor {
     pub unique_name: String,
     /// Name of the tree type, such as `Tree_float_5_4_3`.
     pub tree: String,
-    /// Whether values are saved as half.
-    pub is_half: bool,
     /// Unique name of the grid whose tree this one shares.
     pub parent: Option<String>,
     /// Where the grid begins and ends; zeros in a stream.
@@ -33,15 +31,8 @@ impl Descriptor {
         let start = cursor.i64("the entry of a grid")?;
         let _values = cursor.i64("the entry of a grid")?;
         let end = cursor.i64("the entry of a grid")?;
-        let tree = type_name.strip_suffix(HALF_SUFFIX);
-        Ok(Self {
-            unique_name,
-            is_half: tree.is_some(),
-            tree: tree.unwrap_or(&type_name).to_owned(),
-            parent: (!parent.is_empty()).then_some(parent),
-            start,
-            end,
-        })
+        let tree = type_name.strip_suffix(HALF_SUFFIX).unwrap_or(&type_name).to_owned();
+        Ok(Self { unique_name, tree, parent: (!parent.is_empty()).then_some(parent), start, end })
     }
 
     /// The name without its number.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use half::f16;
+
 use super::contents::{Contents, MAGIC};
 use super::cursor::Cursor;
 use super::error::VdbError;
@@ -82,6 +84,12 @@ impl VdbFile {
         self.load_as(index, limits, |value: V| value)
     }
 
+    /// The bytes of the file and what was found in them.
+    #[cfg(feature = "vdb-rs")]
+    pub(super) fn parts(&self) -> (&[u8], &Listing) {
+        (&self.contents.bytes, &self.listing)
+    }
+
     fn list(name: String, contents: Contents, held_bytes: u64) -> Result<Self, VdbError> {
         let mut cursor = Cursor::new(&contents.bytes, 0);
         if cursor.array("the header").ok() != Some(MAGIC) {
@@ -153,6 +161,7 @@ impl VolumeSource for VdbFile {
         match self.usable(index)?.0.value_type {
             ValueType::Float => self.load_as(index, limits, |value: f32| value),
             ValueType::Double => self.load_as(index, limits, |value: f64| value as f32),
+            ValueType::Half => self.load_as(index, limits, f16::to_f32),
             ValueType::Int32 => self.load_as(index, limits, |value: i32| value as f32),
             ValueType::Int64 => self.load_as(index, limits, |value: i64| value as f32),
             _ => Err(self.wrong_type(&self.summaries[index], "numbers")),

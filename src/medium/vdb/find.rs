@@ -93,7 +93,7 @@ fn check_scalar(source: &dyn VolumeSource, grid: &GridSummary) -> Result<(), Vdb
 
 /// Whether a grid holds real numbers and can be loaded.
 fn is_real(grid: &GridSummary) -> bool {
-    matches!(grid.value_type.as_str(), "float" | "double") && grid.unusable.is_none()
+    matches!(grid.value_type.as_str(), "float" | "double" | "half") && grid.unusable.is_none()
 }
 
 /// The only grid that passes, if there is exactly one.

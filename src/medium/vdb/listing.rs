@@ -21,6 +21,8 @@ use super::value::ValueType;
 use crate::math::DAffine3;
 
 pub(super) const UUID_LEN: usize = 36;
+/// Grids listed. Sound files hold some hundreds at the most; an entry of 36 bytes would become a summary of a thousand.
+const MAX_GRIDS: usize = 1 << 13;
 const WHAT: &str = "the header";
 
 /// The grids of a file.
@@ -45,7 +47,11 @@ impl Listing {
 
         let mut grids = Vec::new();
         let mut damage = None;
-        for _ in 0..count {
+        for index in 0..count as usize {
+            if index == MAX_GRIDS {
+                damage = Some(Fault::invalid(format!("it claims to hold {count} grids")));
+                break;
+            }
             let next = ListedGrid::read(cursor, bytes, has_offsets, &mut grids);
             if let Err(fault) = next {
                 damage = Some(fault);
@@ -67,6 +73,12 @@ impl Listing {
     /// What there is to say of each grid.
     pub(super) fn summaries(&self) -> Vec<GridSummary> {
         self.grids.iter().map(|grid| self.summary(grid)).collect()
+    }
+
+    /// The entry of a grid.
+    #[cfg(feature = "vdb-rs")]
+    pub(super) fn descriptor(&self, index: usize) -> Option<&Descriptor> {
+        self.grids.get(index).map(|grid| &grid.descriptor)
     }
 
     /// The tree of a grid, its own or the one it shares, when it can be read.
@@ -99,7 +111,7 @@ impl Listing {
             unique_name: grid.descriptor.shown_name(),
             value_type: owner.value_type.clone(),
             class: grid.metadata.class.clone().unwrap_or_else(|| "unknown".into()),
-            half: owner.descriptor.is_half,
+            half: owner.metadata.is_half,
             compression: owner.compression.map_or_else(String::new, Compression::words),
             map: grid
                 .transform
@@ -194,7 +206,7 @@ impl ListedGrid {
             return Ok(());
         }
         let value_type = ValueType::of_tree(&self.descriptor.tree).1?;
-        let layout = Layout::new(value_type, self.descriptor.is_half, compression);
+        let layout = Layout::new(value_type, self.metadata.is_half, compression);
         let start = cursor.position();
         let census = Census::take(cursor, value_type, &layout)?;
         self.tree = Some(StoredTree { value_type, layout, start, end, census });

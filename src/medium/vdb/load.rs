@@ -85,7 +85,7 @@ pub(super) fn load<V: GridValue, O: Copy + Default + Send + Sync>(
 
     let unpacking = Unpacking { layout: &tree.layout, masks: &grid.masks, background, convert };
     let mut values = with_room(leaf_count, needed)?;
-    unpacking.unpack_all(cursor, &tree.census.leaf_active_counts, &mut values)?;
+    unpacking.unpack_all(cursor, &mut values)?;
     grid.values = values.into_flattened();
     Ok(grid)
 }
@@ -112,20 +112,19 @@ impl<V: GridValue, C> Unpacking<'_, V, C> {
     fn unpack_all<'f, O: Copy + Default + Send + Sync>(
         &self,
         mut cursor: Cursor<'f>,
-        active_counts: &[u16],
         values: &mut Vec<[O; LEAF_LEN]>,
     ) -> Result<(), Fault>
     where
         C: Fn(V) -> O + Copy + Sync,
     {
-        let mut find = |active_counts: &[u16], batch: &mut Vec<Block<'f>>| {
+        let mut find = |masks: &[[u64; 8]], batch: &mut Vec<Block<'f>>| {
             batch.clear();
-            for &count in active_counts {
-                batch.push(leaf_block(&mut cursor, self.layout, usize::from(count))?);
+            for mask in masks {
+                batch.push(leaf_block(&mut cursor, self.layout, mask)?);
             }
             Ok(())
         };
-        let mut ahead = active_counts.chunks(LEAVES_A_BATCH);
+        let mut ahead = self.masks.chunks(LEAVES_A_BATCH);
         let (mut batch, mut next) = (Vec::new(), Vec::new());
         find(ahead.next().unwrap_or(&[]), &mut batch)?;
         while !batch.is_empty() {

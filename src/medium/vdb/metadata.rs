@@ -71,6 +71,9 @@ pub(super) fn is_reserved(name: &str) -> bool {
 pub(super) struct Metadata {
     /// "fog volume", "level set", "staggered".
     pub class: Option<String>,
+    /// Whether values are saved as half. The library goes by this, not by the `_HalfFloat` in the
+    /// grid's entry.
+    pub is_half: bool,
     /// Statistics the writer left: bounds of the active voxels and their number.
     pub bbox_min: Option<[i32; 3]>,
     pub bbox_max: Option<[i32; 3]>,
@@ -101,6 +104,9 @@ impl Metadata {
     fn note(&mut self, name: &str, kind: &str, value: &[u8]) {
         match (name, kind) {
             ("class", "string") => self.class = Some(String::from_utf8_lossy(value).into_owned()),
+            ("is_saved_as_half_float", "bool") => {
+                self.is_half = value.iter().any(|&byte| byte != 0)
+            }
             ("file_bbox_min", "vec3i") => self.bbox_min = coordinates(value),
             ("file_bbox_max", "vec3i") => self.bbox_max = coordinates(value),
             ("file_voxel_count", "int64") => {

@@ -5,7 +5,7 @@
 //! (file versions 222 to 225). The modules follow the order of the bytes:
 //!
 //! file and descriptors -> metadata -> transform -> tree (topology) -> block (values of a node) ->
-//! codec, blosc.
+//! codec, blosc. `VdbRsFile` (feature `vdb-rs`) is a second reader, for some of the grids.
 //!
 //! [`write_vdb`] writes [`SparseGrid`]s; its modules are in `write/`. [`crop`] cuts a grid.
 //!
@@ -16,8 +16,8 @@
 mod block;
 mod blosc;
 mod codec;
-mod crop;
 mod contents;
+mod crop;
 mod cursor;
 mod descriptor;
 mod error;
@@ -34,7 +34,12 @@ mod summary;
 mod transform;
 mod tree;
 mod value;
+#[cfg(feature = "vdb-rs")]
+mod vdb_rs_file;
 mod write;
+
+/// The 16-bit number of half grids.
+pub use half::f16;
 
 pub use crop::{CropError, crop};
 pub use error::VdbError;
@@ -47,6 +52,8 @@ pub use sanitize::{SanitizeCount, sanitize_density};
 pub use sparse::{SparseGrid, Tile};
 pub use summary::{GridSummary, IndexBox};
 pub use value::GridValue;
+#[cfg(feature = "vdb-rs")]
+pub use vdb_rs_file::VdbRsFile;
 pub use write::{
     GridClass, GridProblem, GridToWrite, ValuesToWrite, VdbWriteError, VdbWriter, WriteCompression,
     WriteOptions, WrittenGrid, write_vdb,

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use half::f16;
+
 use super::block::Layout;
 use super::codec::Scratch;
 use super::cursor::Cursor;
@@ -50,7 +52,7 @@ pub struct GridSummary {
     pub name: String,
     /// Name that no other grid of the file has: `density[1]` for the second grid named so.
     pub unique_name: String,
-    /// Type of a voxel as OpenVDB names it ("float", "double", "int32", "vec3s", "bool", ...), or
+    /// Type of a voxel as OpenVDB names it ("float", "double", "half", "int32", "vec3s", "bool", ...), or
     /// "points".
     pub value_type: String,
     /// "fog volume", "level set", "staggered" or "unknown".
@@ -86,7 +88,7 @@ impl GridSummary {
     /// Whether the grid holds one number a voxel and can be loaded with
     /// [`load_scalar`](super::VolumeSource::load_scalar).
     pub fn is_usable_scalar(&self) -> bool {
-        const SCALARS: [&str; 4] = ["float", "double", "int32", "int64"];
+        const SCALARS: [&str; 5] = ["float", "double", "half", "int32", "int64"];
         self.unusable.is_none() && SCALARS.contains(&self.value_type.as_str())
     }
 
@@ -120,6 +122,7 @@ impl Census {
         match value_type {
             ValueType::Float => Count::<f32>::of(cursor, layout),
             ValueType::Double => Count::<f64>::of(cursor, layout),
+            ValueType::Half => Count::<f16>::of(cursor, layout),
             ValueType::Int32 => Count::<i32>::of(cursor, layout),
             ValueType::Int64 => Count::<i64>::of(cursor, layout),
             ValueType::Vec3s => Count::<[f32; 3]>::of(cursor, layout),
@@ -148,6 +151,7 @@ impl Census {
         match value_type {
             ValueType::Float => Some(f32::from_bytes(bytes).into()),
             ValueType::Double => Some(f64::from_bytes(bytes)),
+            ValueType::Half => Some(f16::from_bytes(bytes).to_f64()),
             ValueType::Int32 => Some(i32::from_bytes(bytes).into()),
             ValueType::Int64 => Some(i64::from_bytes(bytes) as f64),
             _ => None,

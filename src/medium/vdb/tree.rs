@@ -185,14 +185,16 @@ fn leaf_mask(cursor: &mut Cursor<'_>) -> Result<[u64; 8], Fault> {
 }
 
 /// Reads the values of a leaf without unpacking them. They follow its mask, which comes a second
-/// time.
+/// time: were it another, it would not be known which voxels the values are of.
 pub(super) fn leaf_block<'a>(
     cursor: &mut Cursor<'a>,
     layout: &Layout,
-    active_count: usize,
+    mask: &[u64; 8],
 ) -> Result<Block<'a>, Fault> {
-    cursor.take(LEAF_MASK_BYTES, "the values of a leaf")?;
-    Block::read(cursor, layout, LEAF_LEN, active_count)
+    if leaf_mask(cursor)? != *mask {
+        return Err(Fault::invalid("a leaf with two different masks"));
+    }
+    Block::read(cursor, layout, LEAF_LEN, count_ones(mask))
 }
 
 /// Passes over the values of a leaf of any type.
@@ -207,9 +209,12 @@ pub(super) fn skip_leaf(
         // Mask and origin; for bool the values too, a bit each.
         ValueType::Mask => LEAF_MASK_BYTES + ORIGIN_BYTES,
         ValueType::Bool => 2 * LEAF_MASK_BYTES + ORIGIN_BYTES,
-        _ => return leaf_block(cursor, layout, active_count).map(drop),
+        _ => {
+            cursor.take(LEAF_MASK_BYTES, WHAT)?;
+            return Block::read(cursor, layout, LEAF_LEN, active_count).map(drop);
+        }
     };
-    cursor.take(len, "the values of a leaf").map(drop)
+    cursor.take(len, WHAT).map(drop)
 }
 
 fn words(bytes: &[u8]) -> Vec<u64> {

@@ -9,6 +9,8 @@ use super::fault::Fault;
 pub(super) enum ValueType {
     Float,
     Double,
+    /// A half in memory too: the `HalfGrid` of OpenVDB 13, file version 225.
+    Half,
     Int32,
     Int64,
     Vec3s,
@@ -31,6 +33,7 @@ impl ValueType {
         let value_type = match word {
             "float" => Self::Float,
             "double" => Self::Double,
+            "half" => Self::Half,
             "int32" => Self::Int32,
             "int64" => Self::Int64,
             "vec3s" => Self::Vec3s,
@@ -67,13 +70,14 @@ impl ValueType {
 
     /// Whether it is one number a voxel that can be read.
     pub(super) fn is_scalar(self) -> bool {
-        matches!(self, Self::Float | Self::Double | Self::Int32 | Self::Int64)
+        matches!(self, Self::Float | Self::Double | Self::Half | Self::Int32 | Self::Int64)
     }
 
     /// Bytes of a value at full precision.
     pub(super) fn size(self) -> usize {
         match self {
             Self::Bool | Self::Mask => 1,
+            Self::Half => 2,
             Self::Float | Self::Int32 => 4,
             Self::Double | Self::Int64 => 8,
             Self::Vec3s | Self::Vec3i => 12,
@@ -81,7 +85,7 @@ impl ValueType {
         }
     }
 
-    /// Bytes of a value saved as half, where the type has halves.
+    /// Bytes of a value saved as half, where that is fewer: what is half already is left as it is.
     pub(super) fn half_size(self) -> Option<usize> {
         match self {
             Self::Float | Self::Double => Some(2),
@@ -95,8 +99,8 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// A type of voxel that can be read as it is stored: `f32`, `f64`, `i32`, `i64`, `[f32; 3]`, `[f64;
-/// 3]`.
+/// A type of voxel that can be read as it is stored: `f16`, `f32`, `f64`, `i32`, `i64`, `[f32; 3]`,
+/// `[f64; 3]`.
 pub trait GridValue: Copy + Default + Send + Sync + sealed::Sealed + 'static {
     /// The word OpenVDB has for it.
     const WORD: &'static str;
@@ -146,6 +150,25 @@ macro_rules! real_value {
             }
         }
     };
+}
+
+impl sealed::Sealed for f16 {}
+impl GridValue for f16 {
+    const WORD: &'static str = "half";
+    const SIZE: usize = size_of::<f16>();
+    const HALF_SIZE: usize = Self::SIZE;
+    fn from_bytes(bytes: &[u8]) -> Self {
+        f16::from_le_bytes(head(bytes))
+    }
+    fn from_half_bytes(bytes: &[u8]) -> Self {
+        Self::from_bytes(bytes)
+    }
+    fn negative(self) -> Self {
+        -self
+    }
+    fn is_same(self, other: Self) -> bool {
+        self == other || (self.is_nan() && other.is_nan())
+    }
 }
 
 macro_rules! integer_value {

@@ -62,7 +62,17 @@ const KINDS: [(&str, &[&str]); 2] = [
     ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
     (
         "vdb",
-        &["kind", "file", "density", "density_scale", "sdf_to_fog", "precision", "albedo", "phase", "transform"],
+        &[
+            "kind",
+            "file",
+            "density",
+            "density_scale",
+            "sdf_to_fog",
+            "precision",
+            "albedo",
+            "phase",
+            "transform",
+        ],
     ),
 ];
 

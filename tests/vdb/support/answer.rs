@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use photonvdb::math::{DAffine3, DVec3};
-use photonvdb::medium::vdb::{GridSummary, Limits, SparseGrid, VdbFile, VolumeSource};
+use photonvdb::medium::vdb::{GridSummary, Limits, SparseGrid, VdbFile, VolumeSource, f16};
 use serde_json::Value;
 
 use super::hash::{Bits, hashes, leaf_voxels};
+use super::sampler::check_box_samples;
 
 /// Types of voxel that are listed and refused.
 const REFUSED_TYPES: [&str; 4] = ["bool", "mask", "vec3i", "points"];
@@ -49,6 +50,7 @@ fn check_grid(file: &VdbFile, index: usize, expected: &Value) -> Result<String, 
     let words = match summary.value_type.as_str() {
         "float" => check_scalar::<f32>(file, index, expected, |value| value)?,
         "double" => check_scalar::<f64>(file, index, expected, |value| value as f32)?,
+        "half" => check_scalar::<f16>(file, index, expected, f16::to_f32)?,
         "int32" => check_scalar::<i32>(file, index, expected, |value| value as f32)?,
         "int64" => check_scalar::<i64>(file, index, expected, |value| value as f32)?,
         "vec3s" => check_vector::<[f32; 3]>(file, index, expected, |value| value)?,
@@ -125,7 +127,8 @@ fn check_scalar<V: Bits>(
     }
     let background = convert(stored.background).bits();
     same("background as f32", &scalar.background.bits(), &background)?;
-    Ok(words)
+    let [between, in_structure] = check_box_samples(&scalar, expected)?;
+    Ok(format!("{words}, {between} samples between voxels ({in_structure} as density)"))
 }
 
 fn check_vector<V: Bits>(
@@ -190,7 +193,7 @@ fn check_sample<V: Bits>(grid: &SparseGrid<V>, sample: &Value) -> Result<(), Str
 }
 
 /// The value at a voxel, wherever it is stored, and whether it is active.
-fn value_at<V: Bits>(grid: &SparseGrid<V>, voxel: [i32; 3]) -> (bool, V) {
+pub fn value_at<V: Bits>(grid: &SparseGrid<V>, voxel: [i32; 3]) -> (bool, V) {
     let inside = |origin: &[i32; 3], dim: i64| {
         (0..3).all(|axis| (0..dim).contains(&(i64::from(voxel[axis]) - i64::from(origin[axis]))))
     };
@@ -246,11 +249,11 @@ fn near(what: &str, read: f64, expected: f64) -> Result<(), String> {
     }
 }
 
-fn text(value: &Value) -> &str {
+pub fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     match value.as_str() {
         Some("inf") => f64::INFINITY,
         Some("-inf") => f64::NEG_INFINITY,

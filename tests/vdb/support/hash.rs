@@ -1,7 +1,7 @@
 //! Hashes of a grid's values that do not depend on their order: sums of hashes of (coordinates,
 //! value). All arithmetic is modulo 2^64.
 
-use photonvdb::medium::vdb::{GridValue, SparseGrid};
+use photonvdb::medium::vdb::{GridValue, SparseGrid, f16};
 
 /// A value as 64 bits, the same for every NaN.
 pub trait Bits: GridValue {
@@ -16,6 +16,16 @@ impl Bits for f32 {
     }
     fn number(self) -> f64 {
         f64::from(self)
+    }
+}
+
+/// As the `f32` it is equal to.
+impl Bits for f16 {
+    fn bits(self) -> u64 {
+        self.to_f32().bits()
+    }
+    fn number(self) -> f64 {
+        self.to_f64()
     }
 }
 

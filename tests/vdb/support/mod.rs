@@ -4,4 +4,5 @@
 pub mod answer;
 pub mod bytes;
 pub mod hash;
+pub mod sampler;
 pub mod stream;

@@ -20,8 +20,8 @@ use super::tree::put_topology;
 use super::value::StoredValue;
 use crate::files::{WriteFailure, write_beside};
 use crate::medium::vdb::block::Layout;
-use crate::medium::vdb::descriptor::{HALF_SUFFIX, SEPARATOR, shown_name};
 use crate::medium::vdb::contents::MAGIC;
+use crate::medium::vdb::descriptor::{HALF_SUFFIX, SEPARATOR, shown_name};
 use crate::medium::vdb::listing::UUID_LEN;
 use crate::medium::vdb::sparse::SparseGrid;
 

@@ -1,0 +1,15 @@
+//! Any bytes as an OpenVDB file: lists its grids, reads all of them under a small limit, and carries densities to
+//! their sampling structure and a ray through it.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use photonvdb::medium::vdb::Limits;
+
+#[path = "../../tests/vdb/support/carry.rs"]
+mod carry;
+
+const LIMITS: Limits = Limits { max_bytes: 1 << 20 };
+
+fuzz_target!(|bytes: &[u8]| {
+    carry::carry(bytes, &LIMITS);
+});
