@@ -34,7 +34,7 @@ fn voxels() -> SparseGrid<f32> {
 fn open(bencher: Bencher) {
     let path = path();
     let bytes = std::fs::metadata(&path).map_or(0, |metadata| metadata.len());
-    bencher.counter(BytesCount::u64(bytes)).bench(|| VdbFile::open(&path));
+    bencher.counter(BytesCount::new(bytes)).bench(|| VdbFile::open(&path));
 }
 
 /// Unpacking the voxels.
@@ -43,7 +43,7 @@ fn load(bencher: Bencher) {
     let (file, index) = file();
     let bytes = file.grids()[index].memory_bytes;
     let limits = Limits::default();
-    bencher.counter(BytesCount::u64(bytes)).bench(|| file.load_scalar(index, &limits));
+    bencher.counter(BytesCount::new(bytes)).bench(|| file.load_scalar(index, &limits));
 }
 
 /// Finding that all values are densities.
@@ -51,7 +51,7 @@ fn load(bencher: Bencher) {
 fn sanitize(bencher: Bencher) {
     let mut voxels = voxels();
     let bytes = voxels.memory_bytes();
-    bencher.counter(BytesCount::u64(bytes)).bench_local(|| sanitize_density(&mut voxels));
+    bencher.counter(BytesCount::new(bytes)).bench_local(|| sanitize_density(&mut voxels));
 }
 
 /// From voxels to bricks.
@@ -60,7 +60,7 @@ fn build(bencher: Bencher, precision: BrickPrecision) {
     let voxels = voxels();
     let limits = Limits::default();
     bencher
-        .counter(BytesCount::u64(voxels.memory_bytes()))
+        .counter(BytesCount::new(voxels.memory_bytes()))
         .bench(|| DensityGrid::build(&voxels, precision, &limits));
 }
 

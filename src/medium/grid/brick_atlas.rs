@@ -197,6 +197,6 @@ pub(super) fn is_uniform(voxels: &[Voxels; 8]) -> Option<f32> {
 /// What holds the row of voxels at (x, y), and what holds its end.
 #[inline(always)]
 fn row_voxels<'a>(voxels: &[Voxels<'a>; 8], x: usize, y: usize) -> (Voxels<'a>, Voxels<'a>) {
-    let neighbour = x / BRICK_EDGE << 2 | y / BRICK_EDGE << 1;
+    let neighbour = (x / BRICK_EDGE) << 2 | (y / BRICK_EDGE) << 1;
     (voxels[neighbour], voxels[neighbour | 1])
 }

@@ -58,8 +58,8 @@ pub fn sanitize_density(grid: &mut SparseGrid<f32>) -> SanitizeCount {
         .map(|values| {
             let mut count = SanitizeCount::default();
             for values in values.chunks_mut(LEAF_LEN) {
-                // Without a branch a value: nearly always there is nothing to do.
-                let is_sound = |&value: &f32| (value >= 0.0) & (value < f32::INFINITY);
+                // By the bits and without a branch a value: nearly always there is nothing to do.
+                let is_sound = |value: &f32| value.to_bits() < f32::INFINITY.to_bits();
                 if !values.iter().fold(true, |sound, value| sound & is_sound(value)) {
                     count = values.iter_mut().fold(count, SanitizeCount::sanitize);
                 }
