@@ -8,7 +8,7 @@ use photonvdb::medium::vdb::Limits;
 #[path = "../../tests/vdb/support/carry.rs"]
 mod carry;
 
-const LIMITS: Limits = Limits { max_bytes: 1 << 20 };
+const LIMITS: Limits = Limits { max_bytes: 1 << 18 };
 
 fuzz_target!(|bytes: &[u8]| {
     carry::carry(bytes, &LIMITS);
