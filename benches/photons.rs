@@ -27,6 +27,7 @@ fn medium() -> Medium {
         bounds: Bounds::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },
         extinction: MediumExtinction::Uniform(FOG),
         albedo: Rgb::splat(0.9),
+        color: None,
         phase: Phase::Isotropic,
     }
 }

@@ -40,6 +40,7 @@ fn main() -> Result<(), MapError> {
         bounds: Bounds::Sphere { center, radius: 4.0 },
         extinction: MediumExtinction::Uniform(UniformExtinction { sigma_t: SIGMA_T }),
         albedo: Rgb::ZERO,
+        color: None,
         phase: Phase::Isotropic,
     };
     let intensity = Rgb::splat(PHI / (4.0 * PI));

@@ -1,7 +1,7 @@
 //! Participating media: what fills the scene, how it attenuates light, and how it scatters it.
 //!
-//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo and a
-//! phase [`Phase`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
+//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo (one for all, or coloured
+//! place by place) and a phase [`Phase`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
 //! pays nothing for grids.
 
 mod ball_points;
@@ -16,7 +16,7 @@ mod profile;
 pub mod vdb;
 
 pub use bounds::{Bounds, Face, Parallelepiped};
-pub use grid::GridExtinction;
+pub use grid::{ColorGrid, GridExtinction};
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
 pub use moments::BallMoments;
 pub use overlap::BallIntegral;
@@ -32,10 +32,29 @@ pub struct Medium {
     pub bounds: Bounds,
     /// How strongly it attenuates.
     pub extinction: MediumExtinction,
-    /// sigma_s / sigma_t per channel, in \[0, 1\].
+    /// sigma_s / sigma_t per channel, in \[0, 1\]: everywhere, or where `color` is white.
     pub albedo: Rgb,
+    /// What the albedo is multiplied by, place by place.
+    pub color: Option<Box<ColorGrid>>,
     /// Where scattered light goes.
     pub phase: Phase,
+}
+
+impl Medium {
+    /// The albedo at a place: the medium's own times its colour there, each channel at most 1.
+    #[inline]
+    pub fn albedo_at(&self, position: DVec3) -> Rgb {
+        match &self.color {
+            None => self.albedo,
+            Some(color) => (self.albedo * color.color(position)).min(Rgb::ONE),
+        }
+    }
+
+    /// No place has a larger albedo.
+    pub fn max_albedo(&self) -> Rgb {
+        let color = self.color.as_ref().map_or(Rgb::ONE, |color| color.max());
+        (self.albedo * color).min(Rgb::ONE)
+    }
 }
 
 /// The kinds of extinction a scene may hold. Match once, outside the loops, and go on with the one found.

@@ -153,7 +153,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count)
-                * self.scene.medium.albedo;
+                * self.scene.medium.albedo_at(place);
             let (towards, turn) = (-ray.direction, uniform(random));
             queries.push(PhotonQuery { place, towards, weight, turn, pixel });
         }

@@ -5,35 +5,42 @@ use std::path::Path;
 
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
-use super::{environment, volume};
+use super::grid_use::GridUse;
+use super::{color, environment, volume};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
 };
 use crate::math::Rgb;
 use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
 
-/// The medium, with `warnings` of what had to be mended in its file.
+/// The medium, with `warnings` of what had to be mended in its file, and the `grids` of that file that it uses.
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
     warnings: &mut Vec<String>,
+    grids: &mut Vec<GridUse>,
 ) -> Result<Medium, Problem> {
     match section {
         MediumSection::Homogeneous { bounds, sigma_t, albedo, phase } => Ok(Medium {
             bounds: bounds.bounds(),
             extinction: homogeneous_extinction(*sigma_t),
             albedo: *albedo,
+            color: None,
             phase: phase.phase(),
         }),
-        MediumSection::Vdb { file, density, density_scale, albedo, phase, transform } => {
-            let (bounds, extinction) = volume::read(
-                &directory.join(file),
-                density.as_deref(),
-                *density_scale,
-                transform.affine(),
-                warnings,
-            )?;
-            Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
+        MediumSection::Vdb { file, density, density_scale, albedo, color, phase, transform } => {
+            let source = volume::open(&directory.join(file))?;
+            let transform = transform.affine();
+            let name = density.as_deref();
+            let (bounds, extinction) =
+                volume::read(&source, name, *density_scale, transform, warnings, grids)?;
+            let color = match color {
+                Some(name) => {
+                    Some(Box::new(color::read(&source, name, transform, warnings, grids)?))
+                }
+                None => None,
+            };
+            Ok(Medium { bounds, extinction, albedo: *albedo, color, phase: phase.phase() })
         }
     }
 }

@@ -7,10 +7,12 @@
 //! [`Scene`] has opened the files it names, too, and nothing in it can be out of range.
 
 mod build;
+mod color;
 mod environment;
 mod error;
 mod expected_collisions;
 mod file;
+mod grid_use;
 mod hash;
 mod light_counts;
 mod overrides;
@@ -23,6 +25,7 @@ pub use file::{
     BoundsSection, CameraSection, EstimateSettings, LightSection, MediumSection, PhaseSection,
     PhotonSettings, RenderSettings, SceneFile, TransformSection,
 };
+pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
 pub use overrides::Overrides;
 pub use plan::{MediumKind, Plan};
@@ -53,6 +56,8 @@ pub struct Scene {
     /// Of all values above, including the content of files they came from: equal for scenes that give the same
     /// image, however their files are written.
     pub hash: u64,
+    /// The grids that the medium is made of.
+    pub grids: Vec<GridUse>,
     /// What was mended on loading, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -77,8 +82,8 @@ impl Scene {
     }
 
     fn build(file: &SceneFile, directory: &Path) -> Result<Self, Problem> {
-        let mut warnings = Vec::new();
-        let medium = build::medium(&file.medium, directory, &mut warnings)?;
+        let (mut warnings, mut grids) = (Vec::new(), Vec::new());
+        let medium = build::medium(&file.medium, directory, &mut warnings, &mut grids)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
@@ -91,6 +96,7 @@ impl Scene {
             estimate: file.estimate,
             render: file.render,
             hash: hash::scene_hash(file, directory)?,
+            grids,
             warnings,
         })
     }

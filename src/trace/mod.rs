@@ -145,7 +145,7 @@ impl<'a, E: Extinction> Path<'a, E> {
                 self.balance.truncated += power;
                 return;
             }
-            let scattered = power * self.medium.albedo;
+            let scattered = power * self.medium.albedo_at(ray.origin);
             let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
             if survival < 1.0 && uniform(&mut random) >= survival {
                 self.balance.absorbed += power;

@@ -36,7 +36,7 @@ pub fn fog(bounds: Bounds, sigma_t: Rgb, albedo: Rgb, g: f64) -> Medium {
         true => MediumExtinction::Uniform(UniformExtinction { sigma_t: sigma_t.x }),
         false => MediumExtinction::Chromatic(ChromaticExtinction { sigma_t }),
     };
-    Medium { bounds, extinction, albedo, phase: phase(g) }
+    Medium { bounds, extinction, albedo, color: None, phase: phase(g) }
 }
 
 pub fn grey_fog(bounds: Bounds, sigma_t: f64, albedo: f64, g: f64) -> Medium {
@@ -49,6 +49,7 @@ pub fn grid_medium(extinction: GridExtinction, albedo: Rgb, g: f64) -> Medium {
         bounds,
         extinction: MediumExtinction::Grid(Box::new(extinction)),
         albedo,
+        color: None,
         phase: phase(g),
     }
 }
@@ -93,6 +94,7 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             photons_only: false,
         },
         hash: 0,
+        grids: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -94,15 +94,20 @@ impl DensityGrid {
         std::array::from_fn(|axis| (point[axis] as i64).clamp(self.first[axis], self.last[axis]))
     }
 
-    /// Density at a point in local coordinates; 0 outside the render bounds.
+    /// Whether a point in local coordinates lies inside the render bounds.
     #[inline]
-    pub(super) fn local_density(&self, point: [f64; 3]) -> f64 {
-        let is_inside = self.active.is_some()
+    pub(super) fn bounds_hold(&self, point: [f64; 3]) -> bool {
+        self.active.is_some()
             && (0..3).all(|axis| {
                 point[axis] >= self.first[axis] as f64
                     && point[axis] <= (self.last[axis] + 1) as f64
-            });
-        if !is_inside {
+            })
+    }
+
+    /// Density at a point in local coordinates; 0 outside the render bounds.
+    #[inline]
+    pub(super) fn local_density(&self, point: [f64; 3]) -> f64 {
+        if !self.bounds_hold(point) {
             return 0.0;
         }
         let cell = self.cell_at(point);

@@ -21,10 +21,7 @@ pub fn find_density(
     explicit: bool,
 ) -> Result<usize, VdbError> {
     let grids = source.grids();
-    let named = grids
-        .iter()
-        .position(|grid| grid.name == name)
-        .or_else(|| grids.iter().position(|grid| grid.unique_name == name));
+    let named = position_named(grids, name);
     let found = match named {
         None if !explicit => only_float(grids),
         named => named,
@@ -36,6 +33,14 @@ pub fn find_density(
     })?;
     check_density(source, &grids[index])?;
     Ok(index)
+}
+
+/// The first grid of that name, plain or unique.
+pub(super) fn position_named(grids: &[GridSummary], name: &str) -> Option<usize> {
+    grids
+        .iter()
+        .position(|grid| grid.name == name)
+        .or_else(|| grids.iter().position(|grid| grid.unique_name == name))
 }
 
 fn check_density(source: &dyn VolumeSource, grid: &GridSummary) -> Result<(), VdbError> {
@@ -70,7 +75,7 @@ fn only_float(grids: &[GridSummary]) -> Option<usize> {
 }
 
 /// The grids of a file, in words.
-fn present(grids: &[GridSummary]) -> String {
+pub(super) fn present(grids: &[GridSummary]) -> String {
     if grids.is_empty() {
         return "it holds no grids at all".into();
     }

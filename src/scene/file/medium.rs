@@ -32,9 +32,13 @@ pub enum MediumSection {
     /// | `file` | path | | required | | an OpenVDB file, relative to the scene file |
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
-    /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
+    /// | `albedo` | number or RGB | | required; 1 with `color` | \[0, 1\] | sigma_s / sigma_t |
+    /// | `color` | text | | none | | name of a grid of vectors (vec3s or vec3d), linear RGB: the albedo is `albedo` times its value, each channel clamped to \[0, 1\] |
     /// | `phase` | table | | isotropic | | see [`PhaseSection`] |
     /// | `transform` | table | | identity | | see [`TransformSection`] |
+    ///
+    /// Grids may have transforms of their own. Each is trilinear between voxels, its background beyond the active ones:
+    /// where that is 0, a colour fades to black over the last voxel.
     ///
     /// The keys of blackbody emission (`temperature`, `temperature_offset`, `temperature_scale`,
     /// `emission_scale`) are reserved and refused.
@@ -44,6 +48,8 @@ pub enum MediumSection {
         density: Option<String>,
         density_scale: f64,
         albedo: Rgb,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        color: Option<String>,
         phase: PhaseSection,
         transform: TransformSection,
     },
@@ -54,7 +60,7 @@ const EMISSION_KEYS: [&str; 4] =
 
 const KINDS: [(&str, &[&str]); 2] = [
     ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
-    ("vdb", &["kind", "file", "density", "density_scale", "albedo", "phase", "transform"]),
+    ("vdb", &["kind", "file", "density", "density_scale", "albedo", "color", "phase", "transform"]),
 ];
 
 impl MediumSection {
@@ -83,11 +89,13 @@ impl MediumSection {
     fn read_vdb(table: &Table) -> Result<Self, Problem> {
         let density_scale = table.get_or("density_scale", 1.0)?;
         table.ensure("density_scale", density_scale >= 0.0, "must not be below 0")?;
+        let color = table.get::<String>("color")?;
         Ok(Self::Vdb {
             file: table.require::<String>("file")?.into(),
             density: table.get("density")?,
             density_scale,
-            albedo: read_albedo(table)?,
+            albedo: if color.is_some() { read_albedo_or_white(table)? } else { read_albedo(table)? },
+            color,
             phase: PhaseSection::read(table)?,
             transform: TransformSection::read(table)?,
         })
@@ -96,6 +104,15 @@ impl MediumSection {
 
 fn read_albedo(table: &Table) -> Result<Rgb, Problem> {
     let albedo = table.require::<OneOrThree>("albedo")?.0;
+    check_albedo(table, albedo)
+}
+
+fn read_albedo_or_white(table: &Table) -> Result<Rgb, Problem> {
+    let albedo = table.get_or("albedo", OneOrThree(Rgb::ONE))?.0;
+    check_albedo(table, albedo)
+}
+
+fn check_albedo(table: &Table, albedo: Rgb) -> Result<Rgb, Problem> {
     let in_range = albedo.min_element() >= 0.0 && albedo.max_element() <= 1.0;
     table.ensure("albedo", in_range, "must lie in [0, 1]")?;
     Ok(albedo)

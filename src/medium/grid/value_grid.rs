@@ -1,0 +1,58 @@
+//! A grid of numbers that are not below 0, placed in the world and read at points: temperatures, flames, a channel of
+//! colours. Trilinear between voxels, as densities are; beyond its active voxels the grid's background holds.
+
+use super::{DensityGrid, extinction::Placement};
+use crate::{
+    math::{DAffine3, DVec3},
+    medium::vdb::SparseGrid,
+};
+
+/// Numbers by place.
+#[derive(Debug)]
+pub struct ValueGrid {
+    grid: DensityGrid,
+    placement: Placement,
+    background: f64,
+}
+
+impl ValueGrid {
+    /// Places a grid; `index_to_world` is the file's transform followed by the scene's. Values that are not finite or
+    /// below 0 count as 0. `None` if no voxel is active, or the transform has no inverse.
+    pub fn new(sparse: &SparseGrid<f32>, index_to_world: DAffine3) -> Option<Self> {
+        let grid = DensityGrid::from_sparse(sparse);
+        let placement = Placement::new(&grid, &index_to_world)?;
+        let background = f64::from(sparse.background);
+        let background = if background.is_finite() { background.max(0.0) } else { 0.0 };
+        Some(Self { grid, placement, background })
+    }
+
+    /// The value at a place in world space.
+    #[inline]
+    pub fn value(&self, position: DVec3) -> f64 {
+        self.local_value(self.local_point(position))
+    }
+
+    /// The largest value anywhere.
+    pub fn max(&self) -> f64 {
+        self.background.max(self.grid.statistics().max_density.into())
+    }
+
+    /// Memory held \[bytes\].
+    pub fn bytes(&self) -> usize {
+        self.grid.statistics().memory_bytes
+    }
+
+    /// Local coordinates of a place: those of every grid of the same topology and transform.
+    #[inline]
+    pub(super) fn local_point(&self, position: DVec3) -> [f64; 3] {
+        self.placement.local_point(position).to_array()
+    }
+
+    #[inline]
+    pub(super) fn local_value(&self, point: [f64; 3]) -> f64 {
+        if self.background != 0.0 && !self.grid.bounds_hold(point) {
+            return self.background;
+        }
+        self.grid.local_density(point)
+    }
+}
