@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use photonvdb::medium::{Bounds, MediumExtinction, Parallelepiped};
-use photonvdb::scene::{MediumKind, Plan, Scene, SceneError};
+use photonvdb::scene::{GridRole, MediumKind, Plan, Scene, SceneError};
 
 fn media(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name)
@@ -123,4 +123,48 @@ fn what_is_no_density_counts_as_zero_and_is_told() {
     let expected =
         "volume.vdb: 5 values are no densities and count as 0 (1 NaN, 2 infinite, 2 negative)";
     assert!(warning.ends_with(expected), "{warning}");
+}
+
+/// The colour of a voxel's centre, of a scene whose medium has these lines.
+fn color_at(medium: &str, place: [f64; 3]) -> [f64; 3] {
+    let scene = load(&small("colored.vdb"), medium).unwrap();
+    scene.medium.albedo_at(place.into()).to_array()
+}
+
+#[test]
+fn a_color_grid_is_chosen_by_name() {
+    // The scene's own albedo is 0.5.
+    assert_eq!(color_at("color = \"Cd\"", [2.0, 3.0, 4.0]), [0.25, 0.25, 0.4375]);
+    assert_eq!(color_at("color = \"half\"", [6.5, 3.0, 4.0]), [0.8125, 0.25, 0.296875]);
+    let moved = "color = \"Cd\"\ntransform = { translate = [10, 0, 0] }";
+    assert_eq!(color_at(moved, [12.0, 3.0, 4.0]), [0.25, 0.25, 0.4375]);
+
+    let scene = load(&small("colored.vdb"), "color = \"Cd\"").unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    let plan = Plan::of(&scene);
+    let used: Vec<_> = plan.grids.iter().map(|grid| (grid.role, grid.name.as_str())).collect();
+    assert_eq!(used, [(GridRole::Density, "density"), (GridRole::Color, "Cd")]);
+    assert!(plan.chromatic && plan.to_string().contains("color from grid \"Cd\", "), "{plan}");
+    let plain = Plan::of(&load(&small("colored.vdb"), "").unwrap());
+    assert_eq!(plain.grids.len(), 1, "{plain}");
+
+    let scene = load(&small("colored.vdb"), "color = \"broken\"").unwrap();
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    let expected =
+        "volume.vdb: 4 components are no colours and count as 0 (1 NaN, 1 infinite, 2 negative)";
+    assert!(warning.ends_with(expected), "{warning}");
+}
+
+#[test]
+fn a_grid_that_is_no_color_is_refused() {
+    assert_eq!(
+        refusal(&small("colored.vdb"), "color = \"temperature\""),
+        ":8: medium.color: grid \"temperature\" of volume.vdb holds float values where vectors \
+         (vec3s or vec3d) are wanted; name another grid"
+    );
+    assert_eq!(
+        refusal(&small("colored.vdb"), "color = \"cd\""),
+        ":8: medium.color: volume.vdb has no grid \"cd\"; name one it holds: \"density\" (float), \
+         \"Cd\" (vec3s), \"half\" (vec3s), \"broken\" (vec3s), \"temperature\" (float)"
+    );
 }

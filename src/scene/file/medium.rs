@@ -94,7 +94,11 @@ impl MediumSection {
             file: table.require::<String>("file")?.into(),
             density: table.get("density")?,
             density_scale,
-            albedo: if color.is_some() { read_albedo_or_white(table)? } else { read_albedo(table)? },
+            albedo: if color.is_some() {
+                read_albedo_or_white(table)?
+            } else {
+                read_albedo(table)?
+            },
             color,
             phase: PhaseSection::read(table)?,
             transform: TransformSection::read(table)?,
