@@ -4,6 +4,7 @@ use crate::estimate::{Estimator, InScattered};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
+use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
@@ -16,7 +17,7 @@ pub struct RayRadiance {
     pub single_scatter: Rgb,
     /// Scattered twice or more.
     pub multiple_scatter: Rgb,
-    /// From lights seen directly, attenuated.
+    /// From lights seen directly, and of the medium's own, attenuated.
     pub emission: Rgb,
     /// Transmittance of the ray's whole part in the medium.
     pub transmittance: Rgb,
@@ -96,6 +97,10 @@ impl<'a, E: Extinction> Reader<'a, E> {
             transmittance: exp(-profile.optical_depth(span.end)),
             ..RayRadiance::default()
         };
+        if let Some(emissivity) = &self.scene.medium.emissivity {
+            let medium = &self.scene.medium;
+            radiance.emission += emitted_light(medium, emissivity, ray, span, profile, random);
+        }
         if !self.scene.render.photons_only {
             radiance.single_scatter = self.single_scatter(ray, span, skipped, random);
         }

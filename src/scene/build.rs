@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::emission::EmissionReader;
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
 use super::grid_use::GridUse;
@@ -27,8 +28,18 @@ pub(super) fn medium(
             albedo: *albedo,
             color: None,
             phase: phase.phase(),
+            emissivity: None,
         }),
-        MediumSection::Vdb { file, density, density_scale, albedo, color, phase, transform } => {
+        MediumSection::Vdb {
+            file,
+            density,
+            density_scale,
+            albedo,
+            color,
+            phase,
+            emission,
+            transform,
+        } => {
             let source = volume::open(&directory.join(file))?;
             let transform = transform.affine();
             let name = density.as_deref();
@@ -40,7 +51,13 @@ pub(super) fn medium(
                 }
                 None => None,
             };
-            Ok(Medium { bounds, extinction, albedo: *albedo, color, phase: phase.phase() })
+            let (albedo, phase, emissivity) = (*albedo, phase.phase(), None);
+            let medium = Medium { bounds, extinction, albedo, color, phase, emissivity };
+            match emission {
+                Some(section) => EmissionReader { source: &source, transform, warnings, grids }
+                    .read(section, medium),
+                None => Ok(medium),
+            }
         }
     }
 }

@@ -10,6 +10,10 @@ pub enum GridRole {
     Density,
     /// What the albedo is multiplied by.
     Color,
+    /// Heat that glows.
+    Temperature,
+    /// Flames that glow.
+    Flame,
 }
 
 /// A grid that the scene uses; the others of the file are not read.
@@ -29,6 +33,8 @@ impl GridRole {
         match self {
             Self::Density => "density",
             Self::Color => "color",
+            Self::Temperature => "temperature",
+            Self::Flame => "flame",
         }
     }
 }

@@ -8,6 +8,7 @@
 
 mod build;
 mod color;
+mod emission;
 mod environment;
 mod error;
 mod expected_collisions;
@@ -22,8 +23,9 @@ mod volume;
 
 pub use error::SceneError;
 pub use file::{
-    BoundsSection, CameraSection, EstimateSettings, LightSection, MediumSection, PhaseSection,
-    PhotonSettings, RenderSettings, SceneFile, TransformSection,
+    BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys, LightSection,
+    MediumSection, PhaseSection, PhotonSettings, RenderSettings, SceneFile, TemperatureKeys,
+    TransformSection,
 };
 pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
@@ -45,7 +47,7 @@ pub struct Scene {
     pub camera: Camera,
     /// What fills it.
     pub medium: Medium,
-    /// At least one.
+    /// At least one, unless the medium has light of its own.
     pub lights: Vec<Light>,
     /// How photons are emitted and followed.
     pub photons: PhotonSettings,

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::Scene;
 use super::expected_collisions::expected_collisions;
 use super::file::emission_word;
-use super::grid_use::GridUse;
+use super::grid_use::{GridRole, GridUse};
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
 use crate::medium::{MediumExtinction, Phase};
@@ -82,13 +82,19 @@ impl Plan {
 /// What the medium needs, a line for each grid, and what the photons cost.
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let glows = |grid: &GridUse| matches!(grid.role, GridRole::Temperature | GridRole::Flame);
         let (medium, needs) = match self.medium {
             MediumKind::Homogeneous => ("homogeneous", "no grid, no majorants, no emission"),
+            MediumKind::Grid if self.grids.iter().any(glows) => {
+                ("density grid", "majorants, emission")
+            }
             MediumKind::Grid => ("density grid", "majorants, no emission"),
         };
         let phase = if self.isotropic { "isotropic" } else { "anisotropic" };
         let color = if self.chromatic { ", chromatic" } else { "" };
-        writeln!(f, "{medium}, {phase}{color}, {}: {needs}", self.lights)?;
+        let lights = self.lights.to_string();
+        let lights = if lights.is_empty() { "no light but its own" } else { &lights };
+        writeln!(f, "{medium}, {phase}{color}, {lights}: {needs}")?;
         for grid in &self.grids {
             let megabytes = grid.memory_bytes.div_ceil(1_000_000);
             writeln!(f, "{} from grid {:?}, {megabytes} MB", grid.role.name(), grid.name)?;

@@ -13,6 +13,7 @@ pub struct ValueGrid {
     grid: DensityGrid,
     placement: Placement,
     background: f64,
+    voxel_size: f64,
 }
 
 impl ValueGrid {
@@ -23,13 +24,21 @@ impl ValueGrid {
         let placement = Placement::new(&grid, &index_to_world)?;
         let background = f64::from(sparse.background);
         let background = if background.is_finite() { background.max(0.0) } else { 0.0 };
-        Some(Self { grid, placement, background })
+        let axes = index_to_world.matrix3;
+        let edges = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
+        let voxel_size = edges.into_iter().fold(f64::INFINITY, f64::min);
+        Some(Self { grid, placement, background, voxel_size })
     }
 
     /// The value at a place in world space.
     #[inline]
     pub fn value(&self, position: DVec3) -> f64 {
         self.local_value(self.local_point(position))
+    }
+
+    /// The shortest edge of a voxel \[m\].
+    pub fn voxel_size(&self) -> f64 {
+        self.voxel_size
     }
 
     /// The largest value anywhere.

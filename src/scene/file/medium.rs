@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::bounds::BoundsSection;
+use super::emission::EmissionSection;
 use super::phase::PhaseSection;
 use super::table::{OneOrThree, Table};
 use super::transform::TransformSection;
@@ -40,8 +41,7 @@ pub enum MediumSection {
     /// Grids may have transforms of their own. Each is trilinear between voxels, its background beyond the active ones:
     /// where that is 0, a colour fades to black over the last voxel.
     ///
-    /// The keys of blackbody emission (`temperature`, `temperature_offset`, `temperature_scale`,
-    /// `emission_scale`) are reserved and refused.
+    /// [`EmissionSection`] has the keys that make it glow.
     Vdb {
         file: PathBuf,
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -51,28 +51,29 @@ pub enum MediumSection {
         #[serde(skip_serializing_if = "Option::is_none")]
         color: Option<String>,
         phase: PhaseSection,
+        #[serde(flatten, skip_serializing_if = "Option::is_none")]
+        emission: Option<EmissionSection>,
         transform: TransformSection,
     },
 }
 
-const EMISSION_KEYS: [&str; 4] =
-    ["temperature", "temperature_offset", "temperature_scale", "emission_scale"];
+const HOMOGENEOUS_KEYS: [&str; 5] = ["kind", "bounds", "sigma_t", "albedo", "phase"];
 
-const KINDS: [(&str, &[&str]); 2] = [
-    ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
-    ("vdb", &["kind", "file", "density", "density_scale", "albedo", "color", "phase", "transform"]),
-];
+const VDB_KEYS: [&str; 8] =
+    ["kind", "file", "density", "density_scale", "albedo", "color", "phase", "transform"];
 
 impl MediumSection {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
-        let kind = table.require_choice("kind", &KINDS.map(|(kind, _)| (kind, kind)))?;
-        if let Some(key) = EMISSION_KEYS.into_iter().find(|key| table.has(key)) {
-            let text = "blackbody emission is not available yet; remove the key to render the \
-                        medium without its own light";
-            return Err(table.problem(key, text));
-        }
-        table.allow_for(kind, &KINDS)?;
+        let vdb_keys = [&VDB_KEYS[..], &EmissionSection::KEYS].concat();
+        let kinds = [("homogeneous", &HOMOGENEOUS_KEYS[..]), ("vdb", &vdb_keys[..])];
+        let kind = table.require_choice("kind", &kinds.map(|(kind, _)| (kind, kind)))?;
+        table.allow_for(kind, &kinds)?;
         if kind == "vdb" { Self::read_vdb(table) } else { Self::read_homogeneous(table) }
+    }
+
+    /// Whether it has light of its own.
+    pub(super) fn emits(&self) -> bool {
+        matches!(self, Self::Vdb { emission: Some(_), .. })
     }
 
     fn read_homogeneous(table: &Table) -> Result<Self, Problem> {
@@ -101,6 +102,7 @@ impl MediumSection {
             },
             color,
             phase: PhaseSection::read(table)?,
+            emission: EmissionSection::read(table)?,
             transform: TransformSection::read(table)?,
         })
     }
