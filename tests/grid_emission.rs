@@ -217,6 +217,46 @@ fn every_watt_of_light_and_heat_is_accounted_for() {
     }
 }
 
+/// A flame far smaller than the fog lights it as a point light of its power does, though all that scatters of it comes
+/// from photons, and single scattering of the light does not.
+#[test]
+fn a_small_flame_is_a_point_light() {
+    let edge: f64 = 0.05;
+    let mut voxels = Voxels::default();
+    voxels.set([0; 3], 1.0);
+    let color = Rgb::ONE / (4.0 * PI * edge.powi(3));
+    let place = DAffine3::from_scale(DVec3::splat(edge));
+    let fog = || fog(CUBE, Rgb::splat(1.0), TINT, 0.3);
+    let flame = burning(ValueGrid::new(&voxels.sparse(), place).unwrap(), color);
+    let mut burning = alone(fog(), flame, 60_000);
+    let mut lit = scene(fog(), one_watt(DVec3::ZERO), 60_000);
+    let scattered = |scene: &Scene| {
+        let mut random = Stream::Experiment.random(scene.photons.seed, 0);
+        let rays: Vec<Ray> = (0..40)
+            .map(|i| passing_ray(DVec3::ZERO, 0.4 + 0.015 * f64::from(i), 3.0, &mut random))
+            .collect();
+        let seen = mean_seen(scene, &rays, &mut random);
+        (seen.single + seen.multiple).to_array()
+    };
+    let (burning, lit) = (over_seeds(&mut burning, scattered), over_seeds(&mut lit, scattered));
+    for channel in 0..3 {
+        let ratio = burning[channel].mean / lit[channel].mean;
+        println!("channel {channel}: {ratio:.4} of {:.4e}", lit[channel].mean);
+        let difference = burning[channel].minus(lit[channel]);
+        difference.assert_within(0.0, 0.01 * lit[channel].mean, "flame - light");
+        assert!(difference.error < 0.01 * lit[channel].mean, "{difference:?}");
+    }
+}
+
+#[test]
+fn photons_do_not_depend_on_the_threads() {
+    let photons = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| trace(&alone(smoke(TINT, 0.4), uneven(), 30_000)).photons)
+    };
+    assert!(photons(1) == photons(3));
+}
+
 /// In equilibrium with walls of its own temperature a medium cannot be seen, whatever it scatters: every ray has the
 /// radiance of a blackbody.
 #[test]

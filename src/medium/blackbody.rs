@@ -21,7 +21,7 @@ const BOLTZMANN: f64 = 1.380_649e-23;
 pub(super) const COLDEST: f64 = 400.0;
 
 /// Intervals of the table, in 1 / T from 0 on.
-const INTERVALS: usize = 256;
+const INTERVALS: usize = 320;
 
 /// ln(XYZ / T) at 1 / T = i / (`INTERVALS` `COLDEST`), with a row beyond either end.
 static TABLE: LazyLock<Vec<DVec3>> = LazyLock::new(|| {

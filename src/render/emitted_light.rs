@@ -27,15 +27,19 @@ pub fn emitted_light(
     let steps = (span.length() / emissivity.voxel_size()).ceil().clamp(1.0, MAX_STEPS);
     let length = span.length() / steps;
     let mut sum = Rgb::ZERO;
+    let mut depth_before = Rgb::ZERO;
     for step in 0..steps as usize {
         let start = span.start + step as f64 * length;
-        if profile.optical_depth(start).min_element() > OPAQUE_DEPTH {
+        if depth_before.min_element() > OPAQUE_DEPTH {
             break;
         }
-        if emissivity.has_heat() {
-            let part = Span::new(start, start + length);
-            sum += light_of_heat(medium, emissivity, ray, part, profile, random);
+        let depth = profile.optical_depth(start + length);
+        if emissivity.has_heat()
+            && let Some(sampling) = ByTransmittance::between(profile, depth_before, depth)
+        {
+            sum += light_of_heat(medium, emissivity, ray, &sampling, random);
         }
+        depth_before = depth;
         if emissivity.has_flame() {
             let distance = start + length * uniform(random);
             let flame = emissivity.flame(ray.at(distance));
@@ -47,16 +51,14 @@ pub fn emitted_light(
     sum
 }
 
-/// The share of one step.
+/// The share of one step, whose places are drawn by transmittance.
 fn light_of_heat(
     medium: &Medium,
     emissivity: &Emissivity,
     ray: &Ray,
-    part: Span,
-    profile: &RayProfile,
+    by_transmittance: &ByTransmittance,
     random: &mut Random,
 ) -> Rgb {
-    let Some(by_transmittance) = ByTransmittance::new(profile, part) else { return Rgb::ZERO };
     let distance = by_transmittance.sample_distance(uniform(random), uniform(random));
     let place = ray.at(distance);
     match emissivity.blackbody(place) {

@@ -32,6 +32,15 @@ impl EmissionReader<'_> {
             Some(keys) => Some(self.read_flame(keys)?),
             None => None,
         };
+        let reaches_out = |flame: &Flame| {
+            flame.grid.active_corners().into_iter().any(|corner| !medium.bounds.contains(corner))
+        };
+        if flame.as_ref().is_some_and(reaches_out) {
+            self.warnings.push(format!(
+                "medium.flame: the flames of {} reach beyond the density grid's bounds and are cut off there",
+                self.source.name()
+            ));
+        }
         let hottest = temperature.as_ref().map(ValueGrid::max);
         let emissivity = Emissivity::new(temperature, flame, section.emission_scale);
         let medium = medium.with_emissivity(emissivity);

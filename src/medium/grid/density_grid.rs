@@ -68,6 +68,13 @@ impl DensityGrid {
         Some((corner(min.map(|c| c - 1)), corner(max.map(|c| c + 1))))
     }
 
+    /// First and last active voxel on each axis, as shares of the render bounds.
+    pub(super) fn active_extent(&self) -> [[f64; 3]; 2] {
+        let cells: [f64; 3] =
+            std::array::from_fn(|axis| (self.last[axis] - self.first[axis] + 1) as f64);
+        [cells.map(|count| 1.0 / count), cells.map(|count| 1.0 - 1.0 / count)]
+    }
+
     /// Counts, extremes and memory.
     pub fn statistics(&self) -> GridStatistics {
         GridStatistics {

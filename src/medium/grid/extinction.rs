@@ -27,7 +27,7 @@ pub struct GridExtinction {
 /// the world's origin, or of tiny voxels, keeps its digits.
 #[derive(Debug)]
 pub(super) struct Placement {
-    bounds: Parallelepiped,
+    pub(super) bounds: Parallelepiped,
     world_center: DVec3,
     local_center: DVec3,
     world_to_local: DMat3,

@@ -36,6 +36,18 @@ impl ValueGrid {
         self.local_value(self.local_point(position))
     }
 
+    /// The corners of the box about its active voxels, in world space.
+    pub fn active_corners(&self) -> [DVec3; 8] {
+        let shape = self.placement.bounds;
+        let [first, last] = self.grid.active_extent();
+        std::array::from_fn(|corner| {
+            let along =
+                |axis: usize| if corner >> axis & 1 == 0 { first[axis] } else { last[axis] };
+            let [u, v, w] = shape.edges();
+            shape.corner() + u * along(0) + v * along(1) + w * along(2)
+        })
+    }
+
     /// The shortest edge of a voxel \[m\].
     pub fn voxel_size(&self) -> f64 {
         self.voxel_size
