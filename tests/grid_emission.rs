@@ -311,3 +311,15 @@ fn cold_media_emit_nothing() {
     let infinite = grey_fog(Bounds::Infinite, 1.0, 0.5, 0.0).with_emissivity(hot(3000.0));
     assert!(infinite.emissivity.is_none());
 }
+
+/// Flames need no density: through a transparent medium all of them is seen.
+#[test]
+fn flames_burn_in_transparent_media() {
+    let medium = grey_fog(CUBE, 0.0, 0.5, 0.0);
+    let scene = alone(medium, burning(everywhere(2.0), Rgb::ONE), 1000);
+    let mut random = Stream::Experiment.random(0, 0);
+    let seen = mean_seen(&scene, &[Ray::new(DVec3::Z * 4.0, DVec3::NEG_Z)], &mut random);
+    assert!((seen.emission - Rgb::splat(4.0)).abs().max_element() < 1e-12, "{seen:?}");
+    let balance = balance_of(&scene);
+    assert_eq!(balance.escaped, balance.emitted);
+}

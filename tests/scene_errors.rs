@@ -155,7 +155,7 @@ const SPOILT: &[(&str, &str, &str)] = &[
     ("sigma_t = 1.0", "sigma_t = 2020-01-01", "s.toml:11: medium.sigma_t: expected a number or a list of 3 numbers, found a date"),
     ("sigma_t = 1.0", "sigma_s = 1.0", "s.toml:11: medium.sigma_s: unknown key; did you mean \"sigma_t\"?"),
     ("sigma_t = 1.0", "sigma_t = 1.0\nfile = \"a.vdb\"", "s.toml:12: medium.file: belongs to kind \"vdb\", but this kind is \"homogeneous\""),
-    ("sigma_t = 1.0", "sigma_t = 1.0\ntemperature = \"heat\"", "s.toml:12: medium.temperature: blackbody emission is not available yet; remove the key to render the medium without its own light"),
+    ("sigma_t = 1.0", "sigma_t = 1.0\ntemperature = \"heat\"", "s.toml:12: medium.temperature: belongs to kind \"vdb\", but this kind is \"homogeneous\""),
     ("0.7]", "1.7]", "s.toml:12: medium.albedo: must lie in [0, 1], found [0.9, 0.8, 1.7]"),
     ("[0.9, 0.8, 0.7]", "-0.1", "s.toml:12: medium.albedo: must lie in [0, 1], found -0.1"),
     ("albedo = [0.9, 0.8, 0.7]\n", "", "s.toml:8: medium.albedo: missing key; expected a number or a list of 3 numbers"),

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{Medium, Parallelepiped};
 use crate::math::{Ball, DVec3, Rgb, mean_channel};
 
-/// Most cells: 16 MB, half a second.
+/// Most cells: 16 MB, and about a second to fill.
 const MAX_CELLS: f64 = (1 << 21) as f64;
 
 /// Share of the places drawn from all cells alike.
@@ -84,11 +84,11 @@ impl EmissiveCells {
         let mut place = self.shape.corner();
         // The range of cells that is left: first one, and how many.
         let (mut first, mut count) = (0, self.sums.len());
-        for axis in 0..3 {
+        for (axis, share) in u.into_iter().enumerate() {
             let slabs = self.counts[axis];
             let stride = count / slabs;
             let (before, total) = (self.sum_before(first), self.sum_before(first + count));
-            let target = before + u[axis] * (total - before);
+            let target = before + share * (total - before);
             let end = |slab: usize| self.sum_before(first + (slab + 1) * stride);
             let slab = partition_point(slabs - 1, |slab| end(slab) <= target);
             let low = self.sum_before(first + slab * stride);
@@ -130,7 +130,7 @@ fn partition_point(count: usize, is_below: impl Fn(usize) -> bool) -> usize {
 
 /// Cells along each axis, in proportion to the voxels along it, and no more than there may be.
 fn cell_counts(mut voxels: [f64; 3]) -> [usize; 3] {
-    let bounded = |count: f64| count.min(MAX_CELLS).max(1.0);
+    let bounded = |count: f64| count.clamp(1.0, MAX_CELLS);
     voxels = voxels.map(bounded);
     while voxels.iter().map(|count| count.ceil()).product::<f64>() > MAX_CELLS {
         voxels = voxels.map(|count| bounded(0.95 * count));

@@ -13,9 +13,9 @@ use crate::scene::Scene;
 /// Light along a ray, by its way through the medium.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayRadiance {
-    /// Scattered once \[W/(m^2 sr)\].
+    /// Of lights, scattered once \[W/(m^2 sr)\].
     pub single_scatter: Rgb,
-    /// Scattered twice or more.
+    /// Scattered twice or more; of the medium's own light, all that is scattered.
     pub multiple_scatter: Rgb,
     /// From lights seen directly, and of the medium's own, attenuated.
     pub emission: Rgb,

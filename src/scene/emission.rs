@@ -50,7 +50,11 @@ impl EmissionReader<'_> {
                 "medium.temperature: no place is hotter than {kelvin:.0} K, and none glows; \
                  give temperature_scale (1 to 3 thousand for a grid of 0 to 1)"
             )),
-            _ if !glows && section.emission_scale > 0.0 => self.warnings.push(
+            None if !glows && section.emission_scale > 0.0 => self.warnings.push(
+                "medium.flame: nothing burns: the grid is 0 wherever the medium is, or flame_color is 0"
+                    .into(),
+            ),
+            Some(_) if !glows && section.emission_scale > 0.0 => self.warnings.push(
                 "the medium does not glow: where it is hot it absorbs nothing; lower its albedo, or \
                  name a flame grid"
                     .into(),

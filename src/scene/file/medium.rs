@@ -52,7 +52,7 @@ pub enum MediumSection {
         color: Option<String>,
         phase: PhaseSection,
         #[serde(flatten, skip_serializing_if = "Option::is_none")]
-        emission: Option<EmissionSection>,
+        emission: Option<Box<EmissionSection>>,
         transform: TransformSection,
     },
 }
@@ -102,7 +102,7 @@ impl MediumSection {
             },
             color,
             phase: PhaseSection::read(table)?,
-            emission: EmissionSection::read(table)?,
+            emission: EmissionSection::read(table)?.map(Box::new),
             transform: TransformSection::read(table)?,
         })
     }
