@@ -248,6 +248,25 @@ fn a_small_flame_is_a_point_light() {
     }
 }
 
+/// Equal photons are what the map wants: those of a real fire differ, since heat glows unevenly within a voxel, but little.
+#[test]
+fn photons_of_a_fire_are_nearly_equal() {
+    let path = tests().parent().unwrap().join("examples/scenes/fire.toml");
+    let mut scene = Scene::load(&path).unwrap();
+    scene.lights.clear();
+    scene.photons.count = 100_000;
+    let emission = emission(&scene, grid_of(&scene.medium));
+    let power = |index| emission.photon(index).map_or(0.0, |photon| photon.power.x);
+    let mut powers: Vec<f64> = (0..emission.count()).map(power).collect();
+    powers.sort_by(f64::total_cmp);
+    let mean = powers.iter().sum::<f64>() / powers.len() as f64;
+    let squares = powers.iter().map(|power| power * power).sum::<f64>() / powers.len() as f64;
+    let [median, high, largest] = [50_000, 99_000, 99_999].map(|rank| powers[rank] / mean);
+    println!("median {median:.3}, 99 % below {high:.2}, largest {largest:.2} of the mean");
+    println!("{:.3} of the photons would do if equal", mean * mean / squares);
+    assert!(mean * mean / squares > 0.75 && largest < 40.0);
+}
+
 #[test]
 fn photons_do_not_depend_on_the_threads() {
     let photons = |threads: usize| {

@@ -224,7 +224,7 @@ fn what_does_not_glow_is_told() {
     let relative = "albedo = 0.5\ntemperature = \"temperature\"";
     assert_eq!(
         warning(media("smoke_plume.vdb"), relative),
-        "medium.temperature: no place is hotter than 1 K, and none glows; \
+        "medium.temperature: no place is hotter than 2 K, and none glows; \
          give temperature_scale (1 to 3 thousand for a grid of 0 to 1)"
     );
     assert_eq!(

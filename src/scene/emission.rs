@@ -66,7 +66,11 @@ impl EmissionReader<'_> {
 
     fn read_temperature(&mut self, keys: &TemperatureKeys) -> Result<ValueGrid, Problem> {
         let (offset, scale) = (keys.temperature_offset, keys.temperature_scale);
-        let kelvin = |value: f32| (offset + scale * f64::from(value)) as f32;
+        // What is below 0 K is cold, and no fault of the grid; what is no number is one.
+        let kelvin = |value: f32| match (offset + scale * f64::from(value)) as f32 {
+            cold if cold.is_finite() => cold.max(0.0),
+            other => other,
+        };
         let sparse = self.load("temperature", &keys.temperature)?;
         self.place(GridRole::Temperature, &keys.temperature, sparse.map(kelvin))
     }

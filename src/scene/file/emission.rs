@@ -12,7 +12,7 @@ use crate::scene::error::Problem;
 /// | key | type | unit | default | range | meaning |
 /// |---|---|---|---|---|---|
 /// | `temperature` | text | | none | | name of a grid of numbers: heat glows as a blackbody |
-/// | `temperature_scale` | number | K per grid value | 1 | at least 0 | kelvin = `temperature_offset` + `temperature_scale` value |
+/// | `temperature_scale` | number | K per grid value | 1 | at least 0 | kelvin = `temperature_offset` + `temperature_scale` value, at least 0 |
 /// | `temperature_offset` | number | K | 0 | | 273.15 for grids in degrees Celsius |
 /// | `flame` | text | | none | | name of a grid of numbers: flames glow whether or not they absorb |
 /// | `flame_color` | number or RGB | W/(m^3 sr) per grid value | \[1, 0.23, 0\] | at least 0 | emissivity of value 1; the default has the colour of 1900 K |
