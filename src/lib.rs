@@ -17,9 +17,10 @@
 //! | [`map`] | photons | [`PhotonMap`](map::PhotonMap): a k-d tree over their places |
 //! | [`estimate`] | the map | [`Estimate`](estimate::Estimate): power density, fluence; light scattered towards a direction |
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
+//! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
-//! [`medium`] knows how light is attenuated and scattered, and reads OpenVDB files ([`medium::vdb`]); [`light`] knows
+//! [`medium`] knows how light is attenuated and scattered, and reads and writes OpenVDB files ([`medium::vdb`]); [`light`] knows
 //! how strongly a place is lit; [`camera`] makes rays; [`math`] holds what all share.
 //!
 //! # From a scene file to pixels
@@ -60,7 +61,9 @@
 pub mod camera;
 pub mod emission;
 pub mod estimate;
+pub mod files;
 pub mod film;
+pub mod lab;
 pub mod light;
 pub mod map;
 pub mod math;

@@ -105,7 +105,9 @@ fn a_vdb_shows_its_grids() {
     assert_eq!(listing["grids"][0]["active_tiles"], 2);
     assert!(show("smoke_blosc.vdb", "").contains("32032 active voxels in 179 leaves"));
     assert!(show("levelset_mask.vdb", "").contains("cannot be rendered: it is a level set"));
-    assert!(show("nan_inf_neg.vdb", "").contains("3 voxels are NaN or infinite"));
+    let text = show("nan_inf_neg.vdb", "");
+    assert!(text.contains("3 voxels are NaN or infinite"), "{text}");
+    assert!(text.contains("3 voxels are negative"), "{text}");
 }
 
 #[test]
@@ -115,4 +117,37 @@ fn a_damaged_vdb_is_an_error() {
     work.run("inspect short.vdb").fails_with("short.vdb cannot be read");
     fs::write(work.path("text.vdb"), "hello").unwrap();
     work.run("inspect text.vdb").fails_with("text.vdb is not an OpenVDB file");
+}
+
+/// The figures are those of the OpenVDB library.
+#[test]
+fn a_grid_of_vectors_shows_its_components() {
+    let work = Workspace::new();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vdb/vec3s_only.vdb");
+    let run = work.run(&format!("inspect {path} --json"));
+    let listing: Value = serde_json::from_str(&run.stdout).unwrap();
+    let grid = &listing["grids"][0];
+    for (key, expected) in [
+        ("min", [-2.4000000953674316, -2.299999952316284, 1.4543533325195312e-05]),
+        ("max", [2.299999952316284, 2.4000000953674316, 1.565636157989502]),
+        ("mean", [0.11151348842520985, 0.009321928506932937, 0.31612897880159535]),
+    ] {
+        for (axis, expected) in expected.into_iter().enumerate() {
+            let shown = grid[key][axis].as_f64().unwrap();
+            assert!((shown - expected).abs() < 1e-12, "{key} {axis}: {shown}");
+        }
+    }
+    assert_eq!(grid["usable"], false);
+}
+
+#[test]
+fn a_limit_of_memory_is_kept_and_named() {
+    let work = Workspace::new();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vdb/smoke_blosc.vdb");
+    let run = work.run(&format!("inspect {path} --json --max-volume-memory 300KiB"));
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let listing: Value = serde_json::from_str(&run.stdout).unwrap();
+    let reason = listing["grids"][0]["reason"].as_str().unwrap();
+    assert!(reason.contains("the limit is 300.0 KiB"), "{reason}");
+    work.run("inspect fog.toml --max-volume-memory lots").fails_with("512MiB");
 }

@@ -196,3 +196,32 @@ fn ctrl_c_ends_after_the_pass_in_flight() {
     assert_eq!(report["photons"]["emitted"], 2000 * passes);
     read_rgb(&work.path("fog.exr")).unwrap();
 }
+
+/// A scene with a level set: refused, then filled with fog on request; strict where asked for.
+#[test]
+fn volumes_are_read_as_the_flags_say() {
+    let work = Workspace::new();
+    let scene = |volume: &str| {
+        let volume = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/").to_owned() + volume;
+        let text = std::fs::read_to_string(work.path("fog.toml")).unwrap();
+        let (camera, rest) = text.split_once("[medium]").unwrap();
+        let (_, lights) = rest.split_once("[[light]]").unwrap();
+        let medium = format!("[medium]\nkind = \"vdb\"\nfile = {volume:?}\nalbedo = 0.9\n\n");
+        let text = format!("{camera}{medium}[[light]]{lights}");
+        std::fs::write(work.path("volume.toml"), text).unwrap();
+    };
+    scene("vdb/levelset_mask.vdb");
+    work.run("render volume.toml -o a.exr").fails_with("--sdf-to-fog");
+    let run = work.run("render volume.toml -o a.exr --sdf-to-fog");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    work.run("render volume.toml -o b.exr --sdf-to-fog --max-volume-memory 100KiB")
+        .fails_with("the limit is 100.0 KiB");
+
+    scene("scene_volumes/nan_inf_neg.vdb");
+    let run = work.run("render volume.toml -o c.exr");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert_eq!(run.stderr.matches("are no densities").count(), 1, "{}", run.stderr);
+    work.run("render volume.toml -o d.exr --strict").fails_with("leave out --strict");
+    work.run("render fog.toml -o e.exr --sdf-to-fog").fails_with("medium.sdf_to_fog");
+    assert_eq!(work.names(), ["a.exr", "c.exr", "fog.toml", "volume.toml"]);
+}

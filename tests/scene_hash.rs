@@ -105,6 +105,7 @@ fn an_override_counts_as_the_value_it_replaces() {
         divisor: Some("k-1/2".into()),
         resolution: Some([32, 18]),
         photons_only: Some(true),
+        ..Overrides::default()
     };
     let scene = Scene::load_with(&path, &overrides).unwrap();
     assert_eq!(scene.hash, expected.hash);

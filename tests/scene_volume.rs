@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use photonvdb::medium::{Bounds, MediumExtinction, Parallelepiped, blackbody_radiance};
-use photonvdb::scene::{GridRole, MediumKind, Plan, Scene, SceneError};
+use photonvdb::scene::{GridRole, MediumKind, Overrides, Plan, Scene, SceneError};
 
 fn media(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name)
@@ -15,6 +15,10 @@ fn small(name: &str) -> PathBuf {
 
 /// Loads a scene beside a file `volume.vdb`, with these lines in its medium.
 fn load(volume: &Path, medium: &str) -> Result<Scene, SceneError> {
+    load_with(volume, medium, &Overrides::default())
+}
+
+fn load_with(volume: &Path, medium: &str, overrides: &Overrides) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(volume, folder.path().join("volume.vdb")).unwrap();
     let scene = format!(
@@ -24,12 +28,16 @@ fn load(volume: &Path, medium: &str) -> Result<Scene, SceneError> {
     );
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene).unwrap();
-    Scene::load(&path)
+    Scene::load_with(&path, overrides)
 }
 
 /// The error, without the folder it happened in.
 fn refusal(volume: &Path, medium: &str) -> String {
-    let message = load(volume, medium).unwrap_err().to_string();
+    refusal_with(volume, medium, &Overrides::default())
+}
+
+fn refusal_with(volume: &Path, medium: &str, overrides: &Overrides) -> String {
+    let message = load_with(volume, medium, overrides).unwrap_err().to_string();
     let words = message.split(' ').map(|word| match word.rfind("/volume.vdb") {
         Some(at) => &word[at + 1..],
         None => word,
@@ -121,7 +129,7 @@ fn what_is_no_density_counts_as_zero_and_is_told() {
     let scene = load(&small("nan_inf_neg.vdb"), "").unwrap();
     let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
     let expected =
-        "volume.vdb: 5 values are no densities and count as 0 (1 NaN, 2 infinite, 2 negative)";
+        "volume.vdb: 5 values are no densities (1 NaN, 2 infinite, 2 negative); they count as 0";
     assert!(warning.ends_with(expected), "{warning}");
 }
 
@@ -151,7 +159,7 @@ fn a_color_grid_is_chosen_by_name() {
     let scene = load(&small("colored.vdb"), "color = \"broken\"").unwrap();
     let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
     let expected =
-        "volume.vdb: 4 components are no colours and count as 0 (1 NaN, 1 infinite, 2 negative)";
+        "volume.vdb: 4 values are no colours (1 NaN, 1 infinite, 2 negative); they count as 0";
     assert!(warning.ends_with(expected), "{warning}");
 }
 
@@ -250,4 +258,61 @@ fn a_grid_that_does_not_glow_is_refused() {
         refusal(&media("cloud.vdb"), "flame = \"flame\""),
         ":8: medium.flame: volume.vdb has no grid \"flame\"; name one it holds: \"density\" (float)"
     );
+}
+
+#[test]
+fn strictness_makes_what_is_no_density_an_error() {
+    let strict = Overrides { strict: true, ..Overrides::default() };
+    assert_eq!(
+        refusal_with(&small("nan_inf_neg.vdb"), "", &strict),
+        ":4: medium.density: grid \"density\" of volume.vdb: 5 values are no densities \
+         (1 NaN, 2 infinite, 2 negative); mend the file, or leave out --strict to count them as 0"
+    );
+    load_with(&media("smoke_plume.vdb"), "", &strict).unwrap();
+}
+
+#[test]
+fn a_level_set_is_refused_unless_it_is_to_be_filled() {
+    let level_set = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/vdb/levelset_mask.vdb");
+    let refused = refusal(&level_set, "density = \"surface\"");
+    assert!(refused.contains("\"surface\" of volume.vdb is a level set"), "{refused}");
+    assert!(refused.contains("--sdf-to-fog, or medium.sdf_to_fog = true"), "{refused}");
+
+    let filled = |medium: &str, overrides: &Overrides| {
+        let scene = load_with(&level_set, medium, overrides).unwrap();
+        let MediumExtinction::Grid(grid) = &scene.medium.extinction else { panic!() };
+        let statistics = grid.grid().statistics();
+        assert_eq!((statistics.active_voxel_count, statistics.max_density), (33_371, 1.0));
+        scene
+    };
+    let by_flag = Overrides { sdf_to_fog: Some(true), ..Overrides::default() };
+    let by_key = filled("sdf_to_fog = true", &Overrides::default());
+    assert_eq!(by_key.warnings, Vec::<String>::new());
+    assert_eq!(filled("density = \"surface\"", &by_flag).warnings, Vec::<String>::new());
+    assert_eq!(filled("", &by_flag).hash, by_key.hash);
+
+    let fog = load_with(&media("smoke_plume.vdb"), "", &by_flag).unwrap();
+    assert!(
+        fog.warnings[0].ends_with("is no level set and is used as it is"),
+        "{:?}",
+        fog.warnings
+    );
+}
+
+#[test]
+fn memory_is_limited_on_request() {
+    let limited = |max| Overrides { max_volume_memory: Some(max), ..Overrides::default() };
+    let refused = refusal_with(&media("smoke_plume.vdb"), "", &limited(100_000));
+    assert!(refused.contains("the limit is 97.7 KiB"), "{refused}");
+    assert!(refused.contains("--max-volume-memory"), "{refused}");
+    load_with(&media("smoke_plume.vdb"), "", &limited(100 << 20)).unwrap();
+}
+
+#[test]
+fn the_majorant_is_finite_at_any_scale() {
+    for scale in ["1e-30", "1e30"] {
+        let scene = load(&media("smoke_plume.vdb"), &format!("density_scale = {scale}")).unwrap();
+        let MediumExtinction::Grid(grid) = &scene.medium.extinction else { panic!() };
+        assert!(grid.max_sigma_t().is_finite());
+    }
 }

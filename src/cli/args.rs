@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExtraLayers;
+use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
 use photonvdb::scene::Overrides;
 
+use super::bias::args::BiasArguments;
+use super::bytes::parse_bytes;
 use super::count::{parse_count, parse_resolution};
 
 const EXAMPLES: &str = "\
@@ -15,10 +18,14 @@ Examples:
       Render a scene and look at it.
   photonvdb render cloud.toml -o cloud.exr --photons 1e7 --passes 16
       Sixteen independent passes of ten million photons, averaged.
+  photonvdb bias 3d-random 3d-jittered --k 10,50,100
+      How far k-nearest estimates are off, exact and measured.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
       What a scene needs, without rendering it.
+  photonvdb convert smoke.vdb -o small.vdb --grid density --half
+      One grid of an OpenVDB file, in half the space.
 
 Exit codes: 0 done, 2 bad input or usage.";
 
@@ -40,6 +47,18 @@ Examples:
   photonvdb inspect fog.toml
   photonvdb inspect fog.exr";
 
+const CONVERT_EXAMPLES: &str = "\
+Examples:
+  photonvdb convert smoke.vdb -o density.vdb --grid density
+      One grid alone.
+  photonvdb convert smoke.vdb -o small.vdb --half --compression zip
+      Every grid, as small as it gets.
+  photonvdb convert smoke.vdb -o corner.vdb --crop -64,0,-64,-1,127,63
+      The voxels from -64 0 -64 to -1 127 63.
+
+Names are those that `photonvdb inspect` shows. Double and integer grids become float, double vectors float vectors;
+class, transform, background, inactive values and metadata stay.";
+
 /// Renders fog, smoke, clouds and fire, homogeneous or from OpenVDB files, by volumetric photon mapping.
 #[derive(Debug, Parser)]
 #[command(name = "photonvdb", version, after_help = EXAMPLES, max_term_width = 100)]
@@ -54,8 +73,12 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to OpenEXR
     Render(Box<RenderArguments>),
+    /// Measure the bias of density estimates on models whose truth is known
+    Bias(Box<BiasArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),
+    /// Write grids of a .vdb to another: some of them, cropped, smaller
+    Convert(ConvertArguments),
 }
 
 /// `photonvdb render`
@@ -121,9 +144,37 @@ pub struct RenderArguments {
     #[arg(long, value_name = "OUT.png")]
     pub preview: Option<PathBuf>,
 
+    /// Reading volumes
+    #[command(flatten)]
+    pub volume: VolumeArguments,
+
+    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
+    #[arg(long)]
+    pub strict: bool,
+
+    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
+    #[arg(long)]
+    pub sdf_to_fog: bool,
+
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// What reading a volume may cost.
+#[derive(Args, Debug)]
+pub struct VolumeArguments {
+    /// Memory that reading a volume may take, like 512MiB or 20GB [default: 8GiB]
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub max_volume_memory: Option<u64>,
+}
+
+impl VolumeArguments {
+    /// The limit given, or the default.
+    pub fn limits(&self) -> Limits {
+        let default = Limits::default();
+        Limits { max_bytes: self.max_volume_memory.unwrap_or(default.max_bytes) }
+    }
 }
 
 /// Layers written on request.
@@ -146,6 +197,72 @@ pub struct InspectArguments {
     /// Machine-readable, on stdout
     #[arg(long)]
     pub json: bool,
+
+    /// Reading volumes
+    #[command(flatten)]
+    pub volume: VolumeArguments,
+}
+
+/// `photonvdb convert`
+#[derive(Args, Debug)]
+#[command(after_help = CONVERT_EXAMPLES)]
+pub struct ConvertArguments {
+    /// OpenVDB file to read
+    pub input: PathBuf,
+
+    /// OpenVDB file to write; may be the one that is read
+    #[arg(short, long, value_name = "OUT.vdb", value_parser = parse_vdb_name)]
+    pub output: PathBuf,
+
+    /// Grid to write, may be given several times [default: every grid that can be converted]
+    #[arg(long = "grid", value_name = "NAME")]
+    pub grids: Vec<String>,
+
+    /// New name, where one grid is written
+    #[arg(long, value_name = "NAME")]
+    pub rename: Option<String>,
+
+    /// Round values to 16 bits
+    #[arg(long)]
+    pub half: bool,
+
+    /// How values are packed
+    #[arg(long, value_name = "C", value_enum, default_value = "blosc")]
+    pub compression: PackingChoice,
+
+    /// Lowest and highest voxel to keep; outside, everything becomes background
+    #[arg(long, value_name = "I0,J0,K0,I1,J1,K1", value_parser = parse_index_box, allow_hyphen_values = true)]
+    pub crop: Option<IndexBox>,
+
+    /// Reading volumes
+    #[command(flatten)]
+    pub volume: VolumeArguments,
+}
+
+/// How values are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PackingChoice {
+    /// Every value as it is
+    None,
+    /// Without values of inactive voxels, where possible
+    Mask,
+    /// As mask, packed with zlib: smallest, slow to write
+    Zip,
+    /// As mask, packed with Blosc: what OpenVDB does by default
+    Blosc,
+}
+
+impl ConvertArguments {
+    /// How grids are to be stored.
+    pub fn write_options(&self) -> WriteOptions {
+        let compression = match self.compression {
+            PackingChoice::None => WriteCompression::None,
+            PackingChoice::Mask => WriteCompression::ActiveMask,
+            PackingChoice::Zip => WriteCompression::Zip,
+            PackingChoice::Blosc => WriteCompression::Blosc,
+        };
+        WriteOptions { compression, half: self.half }
+    }
 }
 
 impl RenderArguments {
@@ -159,6 +276,9 @@ impl RenderArguments {
             divisor: self.divisor.clone(),
             resolution: self.resolution,
             photons_only: self.photons_only.then_some(true),
+            sdf_to_fog: self.sdf_to_fog.then_some(true),
+            max_volume_memory: self.volume.max_volume_memory,
+            strict: self.strict,
         }
     }
 
@@ -185,4 +305,27 @@ fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
         )),
         _ => Ok(text.into()),
     }
+}
+
+/// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
+fn parse_vdb_name(text: &str) -> Result<PathBuf, String> {
+    match Path::new(text).extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("vdb") => {
+            Err("grids are written as OpenVDB, the file's name must end in .vdb".into())
+        }
+        _ => Ok(text.into()),
+    }
+}
+
+/// Parses `-8,0,0,7,15,15`: the lowest and the highest voxel of a box.
+fn parse_index_box(text: &str) -> Result<IndexBox, String> {
+    let numbers: Result<Vec<i32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let corners = numbers.ok().and_then(|numbers| <[i32; 6]>::try_from(numbers).ok());
+    let [i0, j0, k0, i1, j1, k1] = corners.ok_or_else(|| {
+        format!("`{text}` is not a box; write six whole numbers, its lowest and its highest voxel, like -8,0,0,7,15,15")
+    })?;
+    if i0 > i1 || j0 > j1 || k0 > k1 {
+        return Err(format!("`{text}` holds no voxel: its lowest must not lie above its highest"));
+    }
+    Ok(IndexBox { min: [i0, j0, k0], max: [i1, j1, k1] })
 }

@@ -3,8 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
+use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
-use photonvdb::medium::vdb::VdbError;
+use photonvdb::lab::LabError;
+use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
 use thiserror::Error;
@@ -19,7 +21,25 @@ pub enum CliError {
     #[error(transparent)]
     Vdb(#[from] VdbError),
     #[error(transparent)]
+    VdbWrite(#[from] VdbWriteError),
+    #[error(transparent)]
+    Write(#[from] WriteFailure),
+    #[error("grid \"{grid}\" of {path} cannot be cropped so: {source}", path = path.display())]
+    Crop { path: PathBuf, grid: String, source: CropError },
+    #[error("{path} has no grid that can be converted", path = path.display())]
+    NothingToConvert { path: PathBuf },
+    #[error("--rename is for one grid and {count} are written; choose one with --grid")]
+    RenameMany { count: usize },
+    #[error(transparent)]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    Lab(#[from] LabError),
+    #[error(
+        "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
+    )]
+    UnknownModel { name: String, nearest: &'static str },
+    #[error("cannot make the directory {path}: {source}", path = path.display())]
+    Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("cannot start {threads} threads: {source}")]

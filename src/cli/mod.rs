@@ -5,6 +5,9 @@
 //! Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.
 
 mod args;
+mod bias;
+mod bytes;
+mod convert;
 mod count;
 mod error;
 mod inspect;
@@ -32,7 +35,9 @@ const BAD_INPUT: u8 = 2;
 pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Bias(arguments) => bias::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
     };
     match finished {
         Ok(()) => ExitCode::SUCCESS,
@@ -41,6 +46,15 @@ pub fn run() -> ExitCode {
             ExitCode::from(BAD_INPUT)
         }
     }
+}
+
+/// A pool of so many threads; without a number one a core, or what RAYON_NUM_THREADS says.
+fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool, CliError> {
+    let threads = threads.unwrap_or(0);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads as usize)
+        .build()
+        .map_err(|source| CliError::Threads { threads, source })
 }
 
 /// Writes a value to stdout as indented JSON.

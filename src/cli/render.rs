@@ -17,6 +17,7 @@ use super::report::{Comparison, Report, Seconds, is_stdout, write_report};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
+use super::thread_pool;
 
 /// Renders what the arguments ask for.
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
@@ -101,15 +102,6 @@ fn load_reference<'a>(
         return Err(FilmError::SizeMismatch { image, reference }.into());
     }
     Ok(Some((path, reference)))
-}
-
-fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool, CliError> {
-    // 0 leaves the number to rayon: one a core, or what RAYON_NUM_THREADS says.
-    let threads = threads.unwrap_or(0);
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads as usize)
-        .build()
-        .map_err(|source| CliError::Threads { threads, source })
 }
 
 fn write_images(

@@ -1,117 +1,28 @@
-//! Files that are either complete or not there: written under a temporary name in the same directory,
-//! then renamed over the old file.
+//! Writing the film's files, complete or not at all.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
 
 use super::FilmError;
+use crate::files::{self, WriteFailure};
 
-/// Writes a file so that `path` holds either what it held before or all of the new content.
-///
-/// `write` fills a new file that lies beside `path`; when it succeeds the file takes the place of
-/// `path`, when it fails the file is removed. A symbolic link keeps pointing to the file it names, and
-/// a device or a pipe (`/dev/null`, `/dev/stdout`) receives the finished content.
+/// As [`files::write_beside`], for what fails as input and output do.
 ///
 /// # Errors
-/// [`FilmError::Write`] with `path` and the cause: the directory is missing or not writable, the disk
-/// is full, `path` is a directory, or `write` failed.
+/// [`FilmError::Write`] with `path` and the cause.
 pub fn write_beside(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), FilmError> {
-    let written = Target::of(path).and_then(|target| {
-        let mut temporary = Temporary::create(target.directory(), &target.path)?;
-        temporary.fill(write)?;
-        target.receive(&temporary)
-    });
-    written.map_err(|source| FilmError::Write { path: path.to_path_buf(), source })
+    let failure = |source| WriteFailure { path: path.to_path_buf(), source };
+    Ok(files::write_beside(path, |file| write(file).map_err(failure))?)
 }
 
-/// Tells early, before an expensive computation, whether [`write_beside`] can create a file beside `path`.
+/// As [`files::check_writable`].
 ///
 /// # Errors
 /// [`FilmError::Write`] with `path` and the cause.
 pub fn check_writable(path: &Path) -> Result<(), FilmError> {
-    let created = Target::of(path)
-        .and_then(|target| Temporary::create(target.directory(), &target.path).map(drop));
-    created.map_err(|source| FilmError::Write { path: path.to_path_buf(), source })
-}
-
-/// Where the content goes.
-struct Target {
-    /// `path` with symbolic links resolved.
-    path: PathBuf,
-    /// A device or a pipe, which must not be replaced by a file.
-    is_special: bool,
-}
-
-impl Target {
-    fn of(path: &Path) -> io::Result<Self> {
-        match fs::metadata(path) {
-            Ok(found) if found.is_dir() => Err(io::Error::other("it is a directory")),
-            Ok(found) if found.is_file() => {
-                Ok(Self { path: fs::canonicalize(path)?, is_special: false })
-            }
-            Ok(_) => Ok(Self { path: path.to_path_buf(), is_special: true }),
-            Err(_) => Ok(Self { path: path.to_path_buf(), is_special: false }),
-        }
-    }
-
-    fn directory(&self) -> PathBuf {
-        match self.path.parent() {
-            _ if self.is_special => std::env::temp_dir(),
-            Some(parent) if parent != Path::new("") => parent.to_path_buf(),
-            _ => PathBuf::from("."),
-        }
-    }
-
-    fn receive(&self, temporary: &Temporary) -> io::Result<()> {
-        if self.is_special {
-            let mut device = OpenOptions::new().write(true).open(&self.path)?;
-            io::copy(&mut File::open(&temporary.path)?, &mut device)?;
-            return Ok(());
-        }
-        fs::rename(&temporary.path, &self.path)
-    }
-}
-
-/// A file that is removed when dropped, unless it was renamed before.
-struct Temporary {
-    path: PathBuf,
-    file: File,
-}
-
-impl Temporary {
-    fn create(directory: PathBuf, target: &Path) -> io::Result<Self> {
-        static COUNTER: AtomicU64 = AtomicU64::new(0);
-        if !directory.is_dir() {
-            let reason = format!("the directory {} does not exist", directory.display());
-            return Err(io::Error::new(io::ErrorKind::NotFound, reason));
-        }
-        let name = target.file_name().ok_or_else(|| io::Error::other("it names no file"))?;
-        let unique = format!(
-            ".{}-{}-{}.part",
-            name.to_string_lossy(),
-            std::process::id(),
-            COUNTER.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = directory.join(unique);
-        let file = OpenOptions::new().read(true).write(true).create_new(true).open(&path)?;
-        Ok(Self { path, file })
-    }
-
-    /// Lets `write` fill the file and forces it to disk, where a full disk shows at the latest.
-    fn fill(&mut self, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
-        write(&mut self.file)?;
-        self.file.sync_all()
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        // After the rename there is nothing left to remove, and that is the good case.
-        let _ = fs::remove_file(&self.path);
-    }
+    Ok(files::check_writable(path)?)
 }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::files::WriteFailure;
+
 /// An image file could not be read, written or compared.
 #[derive(Debug, Error)]
 pub enum FilmError {
@@ -68,4 +70,10 @@ pub enum FilmError {
         /// Width and height of the reference \[pixels\].
         reference: [usize; 2],
     },
+}
+
+impl From<WriteFailure> for FilmError {
+    fn from(WriteFailure { path, source }: WriteFailure) -> Self {
+        Self::Write { path, source }
+    }
 }

@@ -3,11 +3,12 @@
 
 use std::path::Path;
 
-use super::emission::EmissionReader;
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
+use super::grid_reader::GridReader;
 use super::grid_use::GridUse;
-use super::{color, environment, volume};
+use super::volume::{self, DensityVolume, VolumeRules};
+use super::{emission, environment};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
 };
@@ -18,6 +19,7 @@ use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinc
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
+    rules: &VolumeRules,
     warnings: &mut Vec<String>,
     grids: &mut Vec<GridUse>,
 ) -> Result<Medium, Problem> {
@@ -34,6 +36,7 @@ pub(super) fn medium(
             file,
             density,
             density_scale,
+            sdf_to_fog,
             albedo,
             color,
             phase,
@@ -42,20 +45,19 @@ pub(super) fn medium(
         } => {
             let source = volume::open(&directory.join(file))?;
             let transform = transform.affine();
-            let name = density.as_deref();
-            let (bounds, extinction) =
-                volume::read(&source, name, *density_scale, transform, warnings, grids)?;
-            let color = match color {
-                Some(name) => {
-                    Some(Box::new(color::read(&source, name, transform, warnings, grids)?))
-                }
-                None => None,
+            let mut reader = GridReader { source: &source, transform, rules, warnings, grids };
+            let density = DensityVolume {
+                grid: density.as_deref(),
+                sdf_to_fog: *sdf_to_fog,
+                density_scale: *density_scale,
             };
-            let (albedo, phase, emissivity) = (*albedo, phase.phase(), None);
-            let medium = Medium { bounds, extinction, albedo, color, phase, emissivity };
+            let (bounds, extinction) = density.read(&mut reader)?;
+            let color = color.as_deref().map(|name| reader.read_color(name).map(Box::new));
+            let (color, phase) = (color.transpose()?, phase.phase());
+            let medium =
+                Medium { bounds, extinction, albedo: *albedo, color, phase, emissivity: None };
             match emission {
-                Some(section) => EmissionReader { source: &source, transform, warnings, grids }
-                    .read(section, medium),
+                Some(section) => emission::read(section, medium, &mut reader),
                 None => Ok(medium),
             }
         }

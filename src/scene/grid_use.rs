@@ -37,4 +37,19 @@ impl GridRole {
             Self::Flame => "flame",
         }
     }
+
+    /// The key that names the grid.
+    pub(super) fn key(self) -> String {
+        format!("medium.{}", self.name())
+    }
+
+    /// What its values are.
+    pub(super) fn plural(self) -> &'static str {
+        match self {
+            Self::Density => "densities",
+            Self::Color => "colours",
+            Self::Temperature => "temperatures",
+            Self::Flame => "flames",
+        }
+    }
 }

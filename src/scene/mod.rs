@@ -7,12 +7,12 @@
 //! [`Scene`] has opened the files it names, too, and nothing in it can be out of range.
 
 mod build;
-mod color;
 mod emission;
 mod environment;
 mod error;
 mod expected_collisions;
 mod file;
+mod grid_reader;
 mod grid_use;
 mod hash;
 mod light_counts;
@@ -39,6 +39,7 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::medium::Medium;
 use error::Problem;
+use volume::VolumeRules;
 
 /// A validated scene. Nothing in it can be out of range.
 #[derive(Debug)]
@@ -80,12 +81,13 @@ impl Scene {
     pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
         let (file, tree) = SceneFile::load_tree(path, overrides)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::build(&file, directory).map_err(|problem| problem.locate(path, &tree))
+        Self::build(&file, directory, &overrides.volume_rules())
+            .map_err(|problem| problem.locate(path, &tree))
     }
 
-    fn build(file: &SceneFile, directory: &Path) -> Result<Self, Problem> {
+    fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
         let (mut warnings, mut grids) = (Vec::new(), Vec::new());
-        let medium = build::medium(&file.medium, directory, &mut warnings, &mut grids)?;
+        let medium = build::medium(&file.medium, directory, rules, &mut warnings, &mut grids)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))

@@ -1,6 +1,8 @@
 //! Values given outside the scene file, usually on the command line.
 
 use super::tree::{Node, Origin, Value};
+use super::volume::VolumeRules;
+use crate::medium::vdb::Limits;
 
 /// Values that replace those of the scene file before it is checked: they meet the same limits and errors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -19,9 +21,22 @@ pub struct Overrides {
     pub resolution: Option<[u64; 2]>,
     /// `render.photons_only`
     pub photons_only: Option<bool>,
+    /// `medium.sdf_to_fog`
+    pub sdf_to_fog: Option<bool>,
+    /// Memory that reading a volume may take \[bytes\], instead of the default of [`Limits`]; not a value of the file.
+    pub max_volume_memory: Option<u64>,
+    /// Whether values that cannot be densities are an error instead of a warning; not a value of the file.
+    pub strict: bool,
 }
 
 impl Overrides {
+    /// What reading volumes may cost and must find.
+    pub(super) fn volume_rules(&self) -> VolumeRules {
+        let default = Limits::default();
+        let max_bytes = self.max_volume_memory.unwrap_or(default.max_bytes);
+        VolumeRules { limits: Limits { max_bytes }, strict: self.strict }
+    }
+
     pub(super) fn apply(&self, tree: &mut Node) {
         let integer = |value: u64| Value::Integer(value.into());
         let mut set = |section: &str, key: &str, value: Option<Value>| {
@@ -35,6 +50,7 @@ impl Overrides {
         set("estimate", "k", self.k.map(integer));
         set("estimate", "divisor", self.divisor.clone().map(Value::Text));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
+        set("medium", "sdf_to_fog", self.sdf_to_fog.map(Value::Boolean));
         let resolution = self.resolution.map(|sides| {
             let item = |side| Node { origin: Origin::Override, value: integer(side) };
             Value::List(sides.map(item).into())

@@ -3,59 +3,100 @@
 use std::path::Path;
 
 use super::error::Problem;
-use super::grid_use::{GridRole, GridUse};
+use super::grid_reader::GridReader;
+use super::grid_use::GridRole;
 use crate::math::DAffine3;
 use crate::medium::grid::DensityGrid;
-use crate::medium::vdb::{Limits, VdbFile, VolumeSource, find_density, sanitize_density};
+use crate::medium::vdb::{
+    GridSummary, Limits, SparseGrid, VdbError, VdbFile, VolumeSource, find_density,
+    find_density_or_level_set, fog_of_level_set,
+};
 use crate::medium::{Bounds, GridExtinction, MediumExtinction, UniformExtinction};
+
+/// What reading volumes may cost and must find.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VolumeRules {
+    /// Memory allowed.
+    pub limits: Limits,
+    /// Whether a value that cannot be a density is an error.
+    pub strict: bool,
+}
+
+/// A density grid of a file, and how a scene uses it: sigma_t = density_scale * density \[1/m\].
+pub(super) struct DensityVolume<'a> {
+    /// Name of the grid, if the scene gives one.
+    pub grid: Option<&'a str>,
+    /// Whether a level set is filled with fog.
+    pub sdf_to_fog: bool,
+    /// Extinction of density 1 \[1/m\].
+    pub density_scale: f64,
+}
 
 /// Opens the file of a volume.
 pub(super) fn open(file: &Path) -> Result<VdbFile, Problem> {
     VdbFile::open(file).map_err(|error| Problem::new("medium.file", error.to_string()))
 }
 
-/// The extinction `density_scale * density` \[1/m\] of a grid, and where it is. `density` names the grid;
-/// `transform` leads from the file's world to the scene's. Pushes a sentence on `warnings` for what was mended, and
-/// the grid on `grids`.
-pub(super) fn read(
-    source: &VdbFile,
-    density: Option<&str>,
-    density_scale: f64,
-    transform: DAffine3,
-    warnings: &mut Vec<String>,
-    grids: &mut Vec<GridUse>,
-) -> Result<(Bounds, MediumExtinction), Problem> {
-    let in_grid = |text: String| Problem::new("medium.density", text);
-    let index = find_density(source, density.unwrap_or("density"), density.is_some())
-        .map_err(|error| in_grid(error.to_string()))?;
-    let unique_name = source.grids()[index].unique_name.clone();
-    let name = format!("grid {unique_name:?} of {}", source.name());
+impl DensityVolume<'_> {
+    /// Reads the extinction and where it is.
+    pub(super) fn read(
+        &self,
+        reader: &mut GridReader,
+    ) -> Result<(Bounds, MediumExtinction), Problem> {
+        let source = reader.source;
+        let index = self.find(source)?;
+        let summary = &source.grids()[index];
+        let unique_name = summary.unique_name.as_str();
+        let name = reader.shown(unique_name);
+        let limits = &reader.rules.limits;
+        let stored = source.load_scalar(index, limits).map_err(|error| in_grid(&error))?;
+        let mut sparse = self.density(stored, summary, &name, reader.warnings);
+        reader.mend(&mut sparse, GridRole::Density, unique_name)?;
+        if let Some(damage) = source.damage() {
+            let name = source.name();
+            reader.warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
+        }
 
-    let limits = Limits::default();
-    let mut sparse = source.load_scalar(index, &limits).map_err(|e| in_grid(e.to_string()))?;
-    let mended = sanitize_density(&mut sparse);
-    if mended.total() > 0 {
-        warnings.push(format!(
-            "{name}: {} values are no densities and count as 0 ({} NaN, {} infinite, {} negative)",
-            mended.total(),
-            mended.nan,
-            mended.infinite,
-            mended.negative,
-        ));
-    }
-    if let Some(damage) = source.damage() {
-        warnings.push(format!("{} is damaged beyond its readable grids: {damage}", source.name()));
+        let index_to_world = reader.transform * sparse.index_to_world;
+        let grid = DensityGrid::from_sparse(&sparse);
+        drop(sparse);
+        if grid.statistics().max_density <= 0.0 {
+            let text = format!("{name} is empty: no density is above 0");
+            return Err(Problem::new("medium.density", text));
+        }
+        reader.note(GridRole::Density, unique_name, grid.statistics().memory_bytes);
+        place(grid, index_to_world, self.density_scale)
     }
 
-    let index_to_world = transform * sparse.index_to_world;
-    let grid = DensityGrid::from_sparse(&sparse);
-    drop(sparse);
-    if grid.statistics().max_density <= 0.0 {
-        return Err(in_grid(format!("{name} is empty: no density is above 0")));
+    fn find(&self, source: &VdbFile) -> Result<usize, Problem> {
+        let find = if self.sdf_to_fog { find_density_or_level_set } else { find_density };
+        find(source, self.grid.unwrap_or("density"), self.grid.is_some())
+            .map_err(|error| in_grid(&error))
     }
-    let memory_bytes = grid.statistics().memory_bytes as u64;
-    grids.push(GridUse { role: GridRole::Density, name: unique_name, memory_bytes });
-    place(grid, index_to_world, density_scale)
+
+    /// The grid's densities: what it holds, or the fog inside it.
+    fn density(
+        &self,
+        stored: SparseGrid<f32>,
+        summary: &GridSummary,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> SparseGrid<f32> {
+        if !self.sdf_to_fog {
+            return stored;
+        }
+        // Not every program names the class; a density is 0 far away, a distance is not.
+        let is_unnamed_level_set = summary.class == "unknown" && stored.background > 0.0;
+        if summary.is_level_set() || is_unnamed_level_set {
+            return fog_of_level_set(stored);
+        }
+        warnings.push(format!("{name} is no level set and is used as it is"));
+        stored
+    }
+}
+
+fn in_grid(error: &VdbError) -> Problem {
+    Problem::new("medium.density", error.to_string())
 }
 
 /// A grid in the world. At scale 0 all that is left of it is its bounds.

@@ -25,9 +25,9 @@ pub fn run(arguments: &InspectArguments) -> Result<(), CliError> {
     if start.starts_with(EXR_MAGIC) || has_extension(path, "exr") {
         exr::inspect(path, arguments.json)
     } else if start.starts_with(VDB_MAGIC) || has_extension(path, "vdb") {
-        vdb::inspect(path, arguments.json)
+        vdb::inspect(path, arguments.json, &arguments.volume.limits())
     } else {
-        scene::inspect(path, arguments.json)
+        scene::inspect(path, arguments.json, arguments.volume.max_volume_memory)
     }
 }
 

@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use photonvdb::scene::{Plan, Scene};
+use photonvdb::scene::{Overrides, Plan, Scene};
 use serde_json::json;
 
 use crate::cli::error::CliError;
 use crate::cli::{print_json, print_to_stdout};
 
 /// Shows what the scene at `path` needs.
-pub fn inspect(path: &Path, as_json: bool) -> Result<(), CliError> {
-    let scene = Scene::load(path)?;
+pub fn inspect(path: &Path, as_json: bool, max_volume_memory: Option<u64>) -> Result<(), CliError> {
+    let overrides = Overrides { max_volume_memory, ..Overrides::default() };
+    let scene = Scene::load_with(path, &overrides)?;
     let plan = Plan::of(&scene);
     if as_json {
         return print_json(&json!({

@@ -1,20 +1,22 @@
 //! An OpenVDB file: its grids, their places and values, and whether each can be rendered as a density.
 
+use std::fmt;
 use std::path::Path;
 
 use photonvdb::math::{DAffine3, DVec3};
-use photonvdb::medium::vdb::{GridSummary, VdbFile, VolumeSource};
+use photonvdb::medium::vdb::{GridSummary, Limits, VdbFile, VolumeSource};
 use serde::Serialize;
 
-use super::grid_values::{GridValues, read_values};
+use super::grid_values::{Figure, GridValues, read_values};
 use crate::cli::error::CliError;
 use crate::cli::{print_json, print_to_stdout};
 
 /// Shows the grids of the file at `path`.
-pub fn inspect(path: &Path, as_json: bool) -> Result<(), CliError> {
+pub fn inspect(path: &Path, as_json: bool, limits: &Limits) -> Result<(), CliError> {
     let file = VdbFile::open(path)?;
     let grids = file.grids().iter().enumerate();
-    let grids: Vec<Grid> = grids.map(|(index, summary)| Grid::of(&file, index, summary)).collect();
+    let grids: Vec<Grid> =
+        grids.map(|(index, summary)| Grid::of(&file, index, summary, limits)).collect();
     if as_json {
         return print_json(&Listing { grids, damage: file.damage() });
     }
@@ -68,8 +70,8 @@ struct Grid {
 }
 
 impl Grid {
-    fn of(file: &VdbFile, index: usize, summary: &GridSummary) -> Self {
-        let (values, unreadable) = match read_values(file, index, summary) {
+    fn of(file: &VdbFile, index: usize, summary: &GridSummary, limits: &Limits) -> Self {
+        let (values, unreadable) = match read_values(file, index, summary, limits) {
             Ok(values) => (values, None),
             Err(error) => (GridValues::default(), Some(error.to_string())),
         };
@@ -111,14 +113,7 @@ impl Grid {
                 self.memory_bytes as f64 / f64::from(1 << 20)
             ),
         ];
-        if let GridValues { min: Some(min), max: Some(max), sum: Some(sum), .. } = self.values {
-            let background =
-                self.background.map_or_else(String::new, |b| format!(", background {b}"));
-            lines.push(format!("values {min} to {max}, sum {sum}{background}"));
-        }
-        if self.values.nonfinite_voxels > 0 {
-            lines.push(format!("{} voxels are NaN or infinite", self.values.nonfinite_voxels));
-        }
+        lines.extend(self.describe_values());
         if let Some(size) = self.voxel_size {
             lines.push(format!("voxel size {}", size.map(short).join(" x ")));
         }
@@ -138,6 +133,35 @@ impl Grid {
     }
 }
 
+impl Grid {
+    fn describe_values(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        let values = &self.values;
+        if let (Some(min), Some(max), Some(mean)) = (values.min, values.max, values.mean) {
+            let background =
+                self.background.map_or_else(String::new, |b| format!(", background {b}"));
+            lines.push(format!("values {min} to {max}, mean {mean}{background}"));
+        }
+        if values.nonfinite_voxels > 0 {
+            lines.push(format!("{} voxels are NaN or infinite", values.nonfinite_voxels));
+        }
+        // A level set is negative inside, a velocity anywhere.
+        if values.negative_voxels > 0 && self.usable {
+            lines.push(format!("{} voxels are negative", values.negative_voxels));
+        }
+        lines
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(value) => f.write_str(&short(*value)),
+            Self::Vector(values) => write!(f, "({})", values.map(short).join(", ")),
+        }
+    }
+}
+
 /// Why a grid cannot serve as a density, as far as its summary tells.
 fn refusal(summary: &GridSummary) -> Option<String> {
     if summary.unusable.is_some() {
@@ -152,7 +176,7 @@ fn refusal(summary: &GridSummary) -> Option<String> {
         ));
     }
     let level_set = "it is a level set, which holds distances to a surface; \
-                     convert it to a fog volume first";
+                     render with --sdf-to-fog to fill it with fog";
     summary.is_level_set().then(|| level_set.to_string())
 }
 

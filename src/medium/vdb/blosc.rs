@@ -10,16 +10,19 @@ use super::codec::inflate;
 use super::cursor::Cursor;
 use super::fault::Fault;
 
-const HEADER_LEN: usize = 16;
-const FORMAT_VERSION: u8 = 2;
-const BYTE_SHUFFLE: u8 = 0x1;
+pub(super) const HEADER_LEN: usize = 16;
+pub(super) const FORMAT_VERSION: u8 = 2;
+pub(super) const BYTE_SHUFFLE: u8 = 0x1;
 const STORED: u8 = 0x2;
 const BIT_SHUFFLE: u8 = 0x4;
 const NOT_SPLIT: u8 = 0x10;
 /// Values of more bytes are never split into streams, nor are streams of fewer bytes than
 /// `MIN_STREAM`.
-const MAX_STREAMS: usize = 16;
-const MIN_STREAM: usize = 128;
+pub(super) const MAX_STREAMS: usize = 16;
+pub(super) const MIN_STREAM: usize = 128;
+/// Codec in the upper bits of the flags.
+pub(super) const LZ4: u8 = 1;
+const ZLIB: u8 = 3;
 const WHAT: &str = "a Blosc frame";
 
 /// The packers a frame can name that are read here.
@@ -32,8 +35,8 @@ enum Packer {
 impl Packer {
     fn of_flags(flags: u8) -> Result<Self, Fault> {
         let name = match flags >> 5 {
-            1 => return Ok(Self::Lz4),
-            3 => return Ok(Self::Zlib),
+            LZ4 => return Ok(Self::Lz4),
+            ZLIB => return Ok(Self::Zlib),
             0 => "BloscLZ",
             2 => "Snappy",
             4 => "Zstandard",

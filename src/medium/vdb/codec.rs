@@ -50,6 +50,16 @@ impl Compression {
         Ok(Self { codec, active_mask: flags & Self::ACTIVE_MASK != 0 })
     }
 
+    /// The flags in the file.
+    pub(super) fn flags(self) -> u32 {
+        let codec = match self.codec {
+            Codec::Raw => 0,
+            Codec::Zip => Self::ZIP,
+            Codec::Blosc => Self::BLOSC,
+        };
+        codec | if self.active_mask { Self::ACTIVE_MASK } else { 0 }
+    }
+
     /// In the words of the OpenVDB library.
     pub(super) fn words(self) -> String {
         let codec = match self.codec {
@@ -177,6 +187,9 @@ mod tests {
 
     #[test]
     fn compression_words_are_those_of_the_library() {
+        for flags in [0, 1, 2, 3, 4, 6] {
+            assert_eq!(Compression::from_flags(flags).unwrap().flags(), flags);
+        }
         let words = |flags| Compression::from_flags(flags).unwrap().words();
         assert_eq!(words(0), "none");
         assert_eq!(words(3), "zip + active values");

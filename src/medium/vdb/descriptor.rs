@@ -4,7 +4,9 @@ use super::cursor::Cursor;
 use super::fault::Fault;
 
 /// Separates a name from the number that makes it unique.
-const SEPARATOR: char = '\u{1e}';
+pub(super) const SEPARATOR: char = '\u{1e}';
+/// Follows the type of a grid whose values are saved as half.
+pub(super) const HALF_SUFFIX: &str = "_HalfFloat";
 
 /// The entry of a grid.
 #[derive(Clone, Debug)]
@@ -31,7 +33,7 @@ impl Descriptor {
         let start = cursor.i64("the entry of a grid")?;
         let _values = cursor.i64("the entry of a grid")?;
         let end = cursor.i64("the entry of a grid")?;
-        let tree = type_name.strip_suffix("_HalfFloat");
+        let tree = type_name.strip_suffix(HALF_SUFFIX);
         Ok(Self {
             unique_name,
             is_half: tree.is_some(),
@@ -50,10 +52,7 @@ impl Descriptor {
 
     /// The unique name as the OpenVDB tools write it: `density[1]`.
     pub(super) fn shown_name(&self) -> String {
-        match self.unique_name.split_once(SEPARATOR) {
-            Some((name, number)) => format!("{name}[{number}]"),
-            None => self.unique_name.clone(),
-        }
+        shown_name(&self.unique_name)
     }
 
     /// The grid's place in a file of `len` bytes whose entry ends at `entry_end`.
@@ -70,5 +69,13 @@ impl Descriptor {
             (Some(_), Some(end)) if end > len => Err(Fault::EndsEarly("a grid")),
             _ => Err(Fault::invalid("a grid's place in the file makes no sense")),
         }
+    }
+}
+
+/// A unique name as the OpenVDB tools write it: `density[1]`.
+pub(super) fn shown_name(unique_name: &str) -> String {
+    match unique_name.split_once(SEPARATOR) {
+        Some((name, number)) => format!("{name}[{number}]"),
+        None => unique_name.to_owned(),
     }
 }

@@ -84,7 +84,7 @@ pub enum VdbError {
     /// The grid holds distances to a surface.
     #[error(
         "grid \"{grid}\" of {file} is a level set: it holds distances to a surface, \
-                not densities; convert it to a fog volume first"
+                not densities; give --sdf-to-fog, or medium.sdf_to_fog = true in the scene, to fill it with fog"
     )]
     LevelSet {
         /// The file.
@@ -95,7 +95,7 @@ pub enum VdbError {
     /// The grid would take more memory than allowed.
     #[error(
         "grid \"{grid}\" of {file} needs {} of memory and the limit is {}; \
-                raise the limit or export it at a lower resolution",
+                raise the limit (--max-volume-memory) or export it at a lower resolution",
         memory_size(*needed), memory_size(*limit)
     )]
     TooLarge {

@@ -14,7 +14,7 @@ use super::value::{GridValue, ValueType};
 use super::{Limits, VolumeSource};
 use crate::math::DAffine3;
 
-const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
+pub(super) const MAGIC: [u8; 8] = 0x5644_4220u64.to_le_bytes();
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=225;
 
 /// An OpenVDB file in memory, its grids listed and ready to be read.

@@ -2,7 +2,7 @@
 
 use super::VolumeSource;
 use super::error::VdbError;
-use super::find::{position_named, present};
+use super::find::find_grid;
 use super::summary::GridSummary;
 
 /// The grid of numbers of that name, whatever its class.
@@ -33,14 +33,9 @@ fn find(
     wanted: &'static str,
     fits: impl Fn(&GridSummary) -> bool,
 ) -> Result<usize, VdbError> {
-    let grids = source.grids();
+    let index = find_grid(source, name)?;
+    let grid = &source.grids()[index];
     let file = || source.name().to_owned();
-    let index = position_named(grids, name).ok_or_else(|| VdbError::NoSuchGrid {
-        file: file(),
-        grid: name.to_owned(),
-        present: present(grids),
-    })?;
-    let grid = &grids[index];
     let name = || grid.unique_name.clone();
     if let Some(reason) = &grid.unusable {
         return Err(VdbError::Unusable { file: file(), grid: name(), reason: reason.clone() });

@@ -20,7 +20,7 @@ use super::tree::skip_leaf;
 use super::value::ValueType;
 use crate::math::DAffine3;
 
-const UUID_LEN: usize = 36;
+pub(super) const UUID_LEN: usize = 36;
 const WHAT: &str = "the header";
 
 /// The grids of a file.
@@ -116,6 +116,7 @@ impl Listing {
                 let component_count = if tree.value_type.is_scalar() { 1 } else { 3 };
                 tree.memory_bytes(component_count * size_of::<f32>())
             }),
+            metadata: grid.metadata.further.clone(),
             unusable: unusable.map(|fault| fault.to_string()),
         }
     }

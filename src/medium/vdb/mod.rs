@@ -1,4 +1,4 @@
-//! Reading OpenVDB files, in safe code.
+//! Reading and writing OpenVDB files, in safe code.
 //!
 //! [`VolumeSource`] is the seam: whatever reads the file returns plain [`SparseGrid`]s. [`VdbFile`]
 //! is the project's own reader of the format, written after the OpenVDB library's `io` sources
@@ -7,6 +7,8 @@
 //! file and descriptors -> metadata -> transform -> tree (topology) -> block (values of a node) ->
 //! codec, blosc.
 //!
+//! [`write_vdb`] writes [`SparseGrid`]s; its modules are in `write/`. [`crop`] cuts a grid.
+//!
 //! A file is data from a stranger: every length and offset is checked before it is used, nothing
 //! recurses, and the memory a grid takes is computed from its topology and compared with [`Limits`]
 //! before any of it is allocated.
@@ -14,6 +16,7 @@
 mod block;
 mod blosc;
 mod codec;
+mod crop;
 mod cursor;
 mod descriptor;
 mod error;
@@ -21,6 +24,7 @@ mod fault;
 mod file;
 mod find;
 mod find_named;
+mod fog;
 mod listing;
 mod load;
 mod metadata;
@@ -30,15 +34,23 @@ mod summary;
 mod transform;
 mod tree;
 mod value;
+mod write;
 
+pub use crop::{CropError, crop};
 pub use error::VdbError;
 pub use file::VdbFile;
-pub use find::find_density;
+pub use find::{find_density, find_density_or_level_set, find_grid};
 pub use find_named::{find_scalar, find_vector};
+pub use fog::fog_of_level_set;
+pub use metadata::MetadataValue;
 pub use sanitize::{SanitizeCount, sanitize_density};
 pub use sparse::{SparseGrid, Tile};
 pub use summary::{GridSummary, IndexBox};
 pub use value::GridValue;
+pub use write::{
+    GridClass, GridProblem, GridToWrite, ValuesToWrite, VdbWriteError, VdbWriter, WriteCompression,
+    WriteOptions, WrittenGrid, write_vdb,
+};
 
 /// A file of volumes, whatever reads it.
 pub trait VolumeSource {

@@ -1,8 +1,11 @@
 //! What a file says of a grid before its values are read.
 
+use std::collections::BTreeMap;
+
 use super::block::Layout;
 use super::cursor::Cursor;
 use super::fault::Fault;
+use super::metadata::MetadataValue;
 use super::sparse::Tile;
 use super::tree::{LEAF_LEN, Node, ROOT_DIM, TreeVisitor, count_ones, walk};
 use super::value::{GridValue, ValueType};
@@ -18,11 +21,20 @@ pub struct IndexBox {
 }
 
 impl IndexBox {
-    fn cube(origin: [i32; 3], dim: i32) -> Self {
+    /// The cube of `dim` voxels along each edge.
+    pub(super) fn cube(origin: [i32; 3], dim: i32) -> Self {
         Self { min: origin, max: origin.map(|along| along.saturating_add(dim - 1)) }
     }
 
-    fn union(self, other: Self) -> Self {
+    /// What both hold, if anything.
+    pub(super) fn intersection(self, other: Self) -> Option<Self> {
+        let min: [i32; 3] = std::array::from_fn(|axis| self.min[axis].max(other.min[axis]));
+        let max: [i32; 3] = std::array::from_fn(|axis| self.max[axis].min(other.max[axis]));
+        (0..3).all(|axis| min[axis] <= max[axis]).then_some(Self { min, max })
+    }
+
+    /// The smallest box around both.
+    pub(super) fn union(self, other: Self) -> Self {
         Self {
             min: std::array::from_fn(|axis| self.min[axis].min(other.min[axis])),
             max: std::array::from_fn(|axis| self.max[axis].max(other.max[axis])),
@@ -63,6 +75,8 @@ pub struct GridSummary {
     pub leaf_count: u64,
     /// Memory of the grid when loaded \[bytes\]; inactive tiles come on top, where there are any.
     pub memory_bytes: u64,
+    /// Further metadata by name, up to 64 KiB of it.
+    pub metadata: BTreeMap<String, MetadataValue>,
     /// Why the grid cannot be loaded, and what to do, when it cannot.
     pub unusable: Option<String>,
 }
@@ -163,7 +177,7 @@ impl TreeVisitor for Census {
 
 /// Bounds of a leaf's active voxels. A word of the mask is a slice of constant x, a byte of it a
 /// row of z.
-fn active_bounds(origin: [i32; 3], mask: &[u64; 8]) -> Option<IndexBox> {
+pub(super) fn active_bounds(origin: [i32; 3], mask: &[u64; 8]) -> Option<IndexBox> {
     let x_min = mask.iter().position(|&slice| slice != 0)?;
     let x_max = mask.iter().rposition(|&slice| slice != 0)?;
     let yz = mask.iter().fold(0, |all, slice| all | slice);

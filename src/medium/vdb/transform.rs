@@ -73,14 +73,18 @@ fn matrix(cursor: &mut Cursor<'_>) -> Result<DMat4, Fault> {
 fn checked(matrix: DMat4) -> Result<DAffine3, Fault> {
     let affine = DAffine3::from_mat4(matrix);
     let is_affine = matrix.row(3) == glam::DVec4::W;
-    let determinant = affine.matrix3.determinant();
-    if is_affine && affine.is_finite() && determinant.is_normal() && affine.inverse().is_finite() {
+    if is_affine && is_invertible(&affine) {
         Ok(affine)
     } else {
         Err(Fault::Unsupported(
             "its transform cannot be inverted; export it with a voxel size above zero".into(),
         ))
     }
+}
+
+/// Whether the map is finite and has an inverse that is.
+pub(super) fn is_invertible(map: &DAffine3) -> bool {
+    map.is_finite() && map.matrix3.determinant().is_normal() && map.inverse().is_finite()
 }
 
 #[cfg(test)]

@@ -38,8 +38,10 @@ pub(super) struct Level {
     pub child_dim: i32,
 }
 
-const UPPER: Level = Level { log2: 5, child_dim: 128 };
-const LOWER: Level = Level { log2: 4, child_dim: 8 };
+/// Children of the root.
+pub(super) const UPPER: Level = Level { log2: 5, child_dim: 128 };
+/// Parents of leaves.
+pub(super) const LOWER: Level = Level { log2: 4, child_dim: 8 };
 
 impl Level {
     /// Children and tiles of a node.

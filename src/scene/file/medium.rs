@@ -33,6 +33,7 @@ pub enum MediumSection {
     /// | `file` | path | | required | | an OpenVDB file, relative to the scene file |
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
+    /// | `sdf_to_fog` | boolean | | false | | fill a level set with fog: density 0 on its surface, 1 at depth |
     /// | `albedo` | number or RGB | | required; 1 with `color` | \[0, 1\] | sigma_s / sigma_t |
     /// | `color` | text | | none | | name of a grid of vectors (vec3s or vec3d), linear RGB: the albedo is `albedo` times its value, each channel clamped to \[0, 1\] |
     /// | `phase` | table | | isotropic | | see [`PhaseSection`] |
@@ -47,6 +48,7 @@ pub enum MediumSection {
         #[serde(skip_serializing_if = "Option::is_none")]
         density: Option<String>,
         density_scale: f64,
+        sdf_to_fog: bool,
         albedo: Rgb,
         #[serde(skip_serializing_if = "Option::is_none")]
         color: Option<String>,
@@ -59,8 +61,17 @@ pub enum MediumSection {
 
 const HOMOGENEOUS_KEYS: [&str; 5] = ["kind", "bounds", "sigma_t", "albedo", "phase"];
 
-const VDB_KEYS: [&str; 8] =
-    ["kind", "file", "density", "density_scale", "albedo", "color", "phase", "transform"];
+const VDB_KEYS: [&str; 9] = [
+    "kind",
+    "file",
+    "density",
+    "density_scale",
+    "sdf_to_fog",
+    "albedo",
+    "color",
+    "phase",
+    "transform",
+];
 
 impl MediumSection {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
@@ -95,6 +106,7 @@ impl MediumSection {
             file: table.require::<String>("file")?.into(),
             density: table.get("density")?,
             density_scale,
+            sdf_to_fog: table.get_or("sdf_to_fog", false)?,
             albedo: if color.is_some() {
                 read_albedo_or_white(table)?
             } else {

@@ -1,0 +1,36 @@
+//! What the lab cannot compute, as one sentence.
+
+use thiserror::Error;
+
+/// Why there is no answer.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum LabError {
+    /// No such photon.
+    #[error("k = {k} is out of range; it must be from 1 to 10^15")]
+    KOutOfRange {
+        /// The k asked for.
+        k: u64,
+    },
+    /// There is no k-th photon of the kind the model tells of.
+    #[error(
+        "{model} has no photon number {k} among n = {n}: it needs {needed} photons; raise --n or lower --k"
+    )]
+    TooFewPhotons {
+        /// The model.
+        model: &'static str,
+        /// Photons there are.
+        n: u64,
+        /// The k asked for.
+        k: u64,
+        /// Photons there must be.
+        needed: u64,
+    },
+    /// A chart cannot be drawn.
+    #[error("the chart {title:?} cannot be drawn: {reason}")]
+    Plot {
+        /// Its title.
+        title: String,
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,25 @@
+//! The bias lab: what k-nearest estimates of power density get wrong, exact and measured.
+//!
+//! ```text
+//! model ──law──▶ exact mean and variance ─┐
+//! model ──experiment──▶ moments ──────────┴─bias──▶ table ──▶ CSV, JSON, SVG
+//! ```
+//! The models are those of K. Hartmann, "Theoretical study of photon mapping with stratification" (LMU 2020), made exact,
+//! and jittered grids, which are what stratified emission is.
+
+mod bias;
+mod constant;
+mod csv;
+mod error;
+mod experiment;
+pub mod figures;
+mod jitter;
+mod model;
+mod plot;
+
+pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
+pub use constant::Constant;
+pub use error::LabError;
+pub use experiment::{Experiment, Method, Moments};
+pub use model::{Law, Model, ShellLaw, law};
+pub use plot::{Chart, Scale, Series};
