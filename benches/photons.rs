@@ -27,6 +27,8 @@ fn medium() -> Medium {
         bounds: Bounds::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },
         extinction: MediumExtinction::Uniform(FOG),
         albedo: Rgb::splat(0.9),
+        color: None,
+        emissivity: None,
         phase: Phase::Isotropic,
     }
 }
@@ -37,7 +39,7 @@ fn trace(medium: &Medium, kind: EmissionKind) -> TracedPhotons {
     let opacity = |ray: &Ray| {
         medium.bounds.intersect(ray).map_or(0.0, |span| FOG.opacity(ray, span, Rgb::ONE))
     };
-    let emission = Emission::new(&lights, &medium.bounds, opacity, 1.0, kind, PHOTONS, 0);
+    let emission = Emission::new(&lights, medium, opacity, 1.0, kind, PHOTONS, 0);
     let settings = TraceSettings { max_order: 1000, min_stored_order: 1, max_stored: usize::MAX };
     trace_photons(&emission, medium, &FOG, MapFrame::of(medium, None), settings, |_| ())
 }

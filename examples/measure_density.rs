@@ -40,6 +40,8 @@ fn main() -> Result<(), MapError> {
         bounds: Bounds::Sphere { center, radius: 4.0 },
         extinction: MediumExtinction::Uniform(UniformExtinction { sigma_t: SIGMA_T }),
         albedo: Rgb::ZERO,
+        color: None,
+        emissivity: None,
         phase: Phase::Isotropic,
     };
     let intensity = Rgb::splat(PHI / (4.0 * PI));
@@ -74,8 +76,7 @@ fn measure_map(
         None => 0.0,
     };
     let mean_free_path = 1.0 / SIGMA_T;
-    let emission =
-        Emission::new(lights, &medium.bounds, opacity, mean_free_path, kind, PHOTONS, seed);
+    let emission = Emission::new(lights, medium, opacity, mean_free_path, kind, PHOTONS, seed);
     let frame = MapFrame::of(medium, None);
     let settings = TraceSettings { max_order: 1, min_stored_order: 0, max_stored: 1 << 24 };
     let traced = trace_photons(&emission, medium, &extinction, frame, settings, |_| {});

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use photonvdb::medium::{Bounds, MediumExtinction, Parallelepiped};
-use photonvdb::scene::{MediumKind, Overrides, Plan, Scene, SceneError};
+use photonvdb::medium::{Bounds, MediumExtinction, Parallelepiped, blackbody_radiance};
+use photonvdb::scene::{GridRole, MediumKind, Overrides, Plan, Scene, SceneError};
 
 fn media(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("media").join(name)
@@ -131,6 +131,133 @@ fn what_is_no_density_counts_as_zero_and_is_told() {
     let expected =
         "volume.vdb: 5 values are no densities (1 NaN, 2 infinite, 2 negative); they count as 0";
     assert!(warning.ends_with(expected), "{warning}");
+}
+
+/// The colour of a voxel's centre, of a scene whose medium has these lines.
+fn color_at(medium: &str, place: [f64; 3]) -> [f64; 3] {
+    let scene = load(&small("colored.vdb"), medium).unwrap();
+    scene.medium.albedo_at(place.into()).to_array()
+}
+
+#[test]
+fn a_color_grid_is_chosen_by_name() {
+    // The scene's own albedo is 0.5.
+    assert_eq!(color_at("color = \"Cd\"", [2.0, 3.0, 4.0]), [0.25, 0.25, 0.4375]);
+    assert_eq!(color_at("color = \"half\"", [6.5, 3.0, 4.0]), [0.8125, 0.25, 0.296875]);
+    let moved = "color = \"Cd\"\ntransform = { translate = [10, 0, 0] }";
+    assert_eq!(color_at(moved, [12.0, 3.0, 4.0]), [0.25, 0.25, 0.4375]);
+
+    let scene = load(&small("colored.vdb"), "color = \"Cd\"").unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    let plan = Plan::of(&scene);
+    let used: Vec<_> = plan.grids.iter().map(|grid| (grid.role, grid.name.as_str())).collect();
+    assert_eq!(used, [(GridRole::Density, "density"), (GridRole::Color, "Cd")]);
+    assert!(plan.chromatic && plan.to_string().contains("color from grid \"Cd\", "), "{plan}");
+    let plain = Plan::of(&load(&small("colored.vdb"), "").unwrap());
+    assert_eq!(plain.grids.len(), 1, "{plain}");
+
+    let scene = load(&small("colored.vdb"), "color = \"broken\"").unwrap();
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    let expected =
+        "volume.vdb: 4 values are no colours (1 NaN, 1 infinite, 2 negative); they count as 0";
+    assert!(warning.ends_with(expected), "{warning}");
+}
+
+#[test]
+fn a_grid_that_is_no_color_is_refused() {
+    assert_eq!(
+        refusal(&small("colored.vdb"), "color = \"temperature\""),
+        ":8: medium.color: grid \"temperature\" of volume.vdb holds float values where vectors \
+         (vec3s or vec3d) are wanted; name another grid"
+    );
+    assert_eq!(
+        refusal(&small("colored.vdb"), "color = \"cd\""),
+        ":8: medium.color: volume.vdb has no grid \"cd\"; name one it holds: \"density\" (float), \
+         \"Cd\" (vec3s), \"half\" (vec3s), \"broken\" (vec3s), \"temperature\" (float)"
+    );
+}
+
+/// A volume alone in the dark, with these lines in its medium.
+fn load_unlit(volume: &Path, medium: &str) -> Result<Scene, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = format!(
+        "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\n\
+         [medium]\nkind = \"vdb\"\nfile = \"{}\"\n{medium}\n",
+        volume.display()
+    );
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene).unwrap();
+    Scene::load(&path)
+}
+
+fn emissivity_at(medium: &str, place: [f64; 3]) -> [f64; 3] {
+    let scene = load_unlit(&small("colored.vdb"), medium).unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    scene.medium.emissivity_at(place.into()).to_array()
+}
+
+#[test]
+fn heat_and_flames_are_chosen_by_name() {
+    let warm = blackbody_radiance(1500.0);
+    let heat = "albedo = 0.75\ndensity_scale = 2\ntemperature = \"temperature\"";
+    assert_eq!(emissivity_at(heat, [3.0; 3]), (warm * 0.5).to_array());
+    let dim = format!("{heat}\nemission_scale = 0.5");
+    assert_eq!(emissivity_at(&dim, [3.0; 3]), (warm * 0.25).to_array());
+    let hotter = format!("{heat}\ntemperature_scale = 2\ntemperature_offset = -1000");
+    assert_eq!(emissivity_at(&hotter, [3.0; 3]), (blackbody_radiance(2000.0) * 0.5).to_array());
+    // Where the colour takes the albedo to 1 nothing is absorbed, and nothing glows.
+    let colored = "color = \"Cd\"\ntemperature = \"temperature\"";
+    let [red, green, _] = emissivity_at(colored, [4.5, 3.0, 3.0]);
+    assert_eq!((red, green), (0.0, 0.5 * warm.y));
+
+    let flame = "albedo = 1\nflame = \"temperature\"\nflame_color = [0.5, 0.25, 0]";
+    assert_eq!(emissivity_at(flame, [3.0; 3]), [750.0, 375.0, 0.0]);
+    let both = "albedo = 0.5\ntemperature = \"temperature\"\nflame = \"density\"\nflame_color = 2";
+    let both = load_unlit(&small("colored.vdb"), both).unwrap();
+    let plan = Plan::of(&both);
+    let roles: Vec<_> = plan.grids.iter().map(|grid| grid.role).collect();
+    assert_eq!(roles, [GridRole::Density, GridRole::Temperature, GridRole::Flame]);
+    assert!(plan.to_string().contains("no light but its own: majorants, emission"), "{plan}");
+    let plain = Plan::of(&load(&small("colored.vdb"), "").unwrap());
+    assert!(plain.to_string().contains("majorants, no emission"), "{plain}");
+}
+
+#[test]
+fn what_does_not_glow_is_told() {
+    let warning = |volume: PathBuf, medium: &str| {
+        let scene = load_unlit(&volume, medium).unwrap();
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        warning.clone()
+    };
+    let relative = "albedo = 0.5\ntemperature = \"temperature\"";
+    assert_eq!(
+        warning(media("smoke_plume.vdb"), relative),
+        "medium.temperature: no place is hotter than 2 K, and none glows; \
+         give temperature_scale (1 to 3 thousand for a grid of 0 to 1)"
+    );
+    assert_eq!(
+        warning(small("colored.vdb"), "albedo = 1\ntemperature = \"temperature\""),
+        "the medium does not glow: where it is hot it absorbs nothing; lower its albedo, or name \
+         a flame grid"
+    );
+    // Only a part of the file's density is hot: the other way round flames are cut off.
+    let cut = warning(media("fire.vdb"), "albedo = 1\ndensity = \"flame\"\nflame = \"density\"");
+    assert!(cut.ends_with("reach beyond the density grid's bounds and are cut off there"), "{cut}");
+    let scene = load_unlit(&media("fire.vdb"), "albedo = 1\nflame = \"flame\"").unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+}
+
+#[test]
+fn a_grid_that_does_not_glow_is_refused() {
+    assert_eq!(
+        refusal(&small("colored.vdb"), "temperature = \"Cd\""),
+        ":8: medium.temperature: grid \"Cd\" of volume.vdb holds vec3s values where numbers are \
+         wanted; name another grid"
+    );
+    assert_eq!(
+        refusal(&media("cloud.vdb"), "flame = \"flame\""),
+        ":8: medium.flame: volume.vdb has no grid \"flame\"; name one it holds: \"density\" (float)"
+    );
 }
 
 #[test]

@@ -12,6 +12,8 @@ mod gallery;
 mod hash;
 #[path = "vdb_written/random.rs"]
 mod random;
+#[path = "vdb/support/sampler.rs"]
+mod sampler;
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

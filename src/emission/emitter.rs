@@ -14,7 +14,7 @@ use crate::math::square_maps::{
     disc_to_cap, disc_to_cosine_hemisphere, square_to_disc, square_to_sphere,
 };
 use crate::math::{Ball, DVec2, DVec3, Frame, Ray, Rgb, mean_channel};
-use crate::medium::{Bounds, Face};
+use crate::medium::{Bounds, EmissiveCells, Face, Medium};
 
 /// A light prepared for the bounds of a medium.
 #[derive(Debug)]
@@ -47,6 +47,8 @@ enum Source<'a> {
     Image { environment: &'a Environment, bounds: &'a Bounds },
     /// A quad: a place, then a direction.
     Quad { light: &'a QuadLight, bounds: &'a Bounds },
+    /// The medium itself: a place by what is emitted there, then a direction.
+    Medium { medium: &'a Medium, cells: &'a EmissiveCells },
     /// A sphere: a place on the side that sees the bounds, then a direction.
     Sphere { light: &'a SphereLight, bounds: &'a Bounds, cap: Option<(Frame, f64)> },
 }
@@ -104,6 +106,16 @@ impl<'a> Emitter<'a> {
         Self { source, power, extents, extent }
     }
 
+    /// Prepares a medium that emits light of its own.
+    pub fn of_medium(medium: &'a Medium) -> Option<Self> {
+        let cells = medium.emissivity.as_ref()?.cells()?;
+        let extent = medium.bounds.enclosing_ball()?;
+        let [u, v, w] = cells.edges();
+        let extents = vec![u, v, w, extent.radius, extent.radius];
+        let power = mean_channel(cells.power());
+        Some(Self { source: Source::Medium { medium, cells }, power, extents, extent })
+    }
+
     fn spot(spot: &'a SpotLight, bounds: &Bounds, extent: Ball) -> (Source<'a>, f64, Vec<f64>) {
         let aim = DirectionAim::new(spot.position, bounds);
         let cone = spot.effective_solid_angle();
@@ -152,7 +164,12 @@ impl<'a> Emitter<'a> {
         self.power
     }
 
-    /// Primary dimensions that lead to a ray: 2 or 4.
+    /// Whether the medium is the source, and not a light.
+    pub fn is_medium(&self) -> bool {
+        matches!(self.source, Source::Medium { .. })
+    }
+
+    /// Primary dimensions that lead to a ray: 2 or 4, or, of a medium, 5.
     pub fn dimensions(&self) -> usize {
         self.extents.len()
     }
@@ -169,7 +186,7 @@ impl<'a> Emitter<'a> {
 
     /// The ray and power \[W\] at a point of the unit cube, the power as if it were the only photon. `None` where
     /// the light sends nothing that way.
-    pub fn sample_ray(&self, u: [f64; 4]) -> Option<(Ray, Rgb)> {
+    pub fn sample_ray(&self, u: [f64; 5]) -> Option<(Ray, Rgb)> {
         let (first, second) = (DVec2::new(u[0], u[1]), DVec2::new(u[2], u[3]));
         let (ray, power) = match &self.source {
             Source::Dark => return None,
@@ -209,6 +226,13 @@ impl<'a> Emitter<'a> {
                 let normal = light.area_normal();
                 let power = light.radiance * normal.length();
                 from_surface(place, normal.normalize(), power, bounds, second)?
+            }
+            Source::Medium { medium, cells } => {
+                let place = cells.sample_place([u[0], u[1], u[2]]);
+                let direction = square_to_sphere(DVec2::new(u[3], u[4]));
+                let emissivity = medium.emissivity_at(place.position);
+                let power = emissivity * (4.0 * PI * place.volume);
+                (Ray::new(place.position, direction), power)
             }
             Source::Sphere { light, bounds, cap } => {
                 let (normal, share) = match cap {

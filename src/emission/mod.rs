@@ -1,6 +1,6 @@
-//! Emission: from lights to photons on their way into the medium.
+//! Emission: from lights, and from a medium that glows, to photons on their way into the medium.
 //!
-//! Photon i of n belongs to a light in proportion to the power that each light sends into the bounds. Its
+//! Photon i of n belongs to a light, or to the medium, in proportion to the power that each sends into the bounds. Its
 //! *primary sample* (place, direction, quantile of the first free flight) is drawn independently, one a
 //! stratum, or from an Owen-scrambled Sobol sequence; everything depends on (seed, i) alone. A [`Guide`] sends
 //! photons where they collide, and the first collision is made likelier than it is, at the price of
@@ -21,7 +21,7 @@ pub use strata::{Interval, MAX_DIMENSIONS, Strata};
 
 use crate::light::Light;
 use crate::math::{DVec2, Random, Ray, Rgb, Stream, uniform};
-use crate::medium::{BoostedQuantile, Bounds};
+use crate::medium::{BoostedQuantile, Medium};
 
 /// How photons are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,8 @@ pub struct EmittedPhoton {
     pub first_flight: BoostedQuantile,
     /// The stream of the photon's further path.
     pub random: Random,
+    /// Whether the medium itself emitted it: then its first collision, too, is known from photons alone.
+    pub is_from_medium: bool,
 }
 
 /// All photons of one pass.
@@ -75,11 +77,11 @@ enum PrimarySampler {
 }
 
 impl<'a> Emission<'a> {
-    /// Prepares `count` photons from the lights into the bounds. `opacity` is that of a ray through the medium;
-    /// it and `mean_free_path` \[m\], a typical one, shape where photons go, nothing else.
+    /// Prepares `count` photons from the lights into the medium, and from the medium itself if it has light of its own.
+    /// `opacity` is that of a ray through the medium; it and `mean_free_path` \[m\], a typical one, shape where photons go, nothing else.
     pub fn new(
         lights: &'a [Light],
-        bounds: &'a Bounds,
+        medium: &'a Medium,
         opacity: impl Fn(&Ray) -> f64,
         mean_free_path: f64,
         kind: EmissionKind,
@@ -88,7 +90,8 @@ impl<'a> Emission<'a> {
     ) -> Self {
         let emitters: Vec<Emitter> = lights
             .iter()
-            .map(|light| Emitter::new(light, bounds))
+            .map(|light| Emitter::new(light, &medium.bounds))
+            .chain(Emitter::of_medium(medium))
             .filter(|emitter| emitter.power_estimate() > 0.0)
             .collect();
         let powers: Vec<f64> = emitters.iter().map(Emitter::power_estimate).collect();
@@ -101,7 +104,9 @@ impl<'a> Emission<'a> {
                 EmissionKind::Random => PrimarySampler::Random,
                 EmissionKind::Stratified => {
                     let extents = emitter.extents(mean_free_path);
-                    PrimarySampler::Stratified(Strata::new(count, &extents))
+                    // Of a medium's dimensions the flight is one too many.
+                    let extents = &extents[..extents.len().min(MAX_DIMENSIONS)];
+                    PrimarySampler::Stratified(Strata::new(count, extents))
                 }
                 EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
             };
@@ -124,17 +129,21 @@ impl<'a> Emission<'a> {
         let mut random = Stream::Photon.random(self.seed, index);
         let sample = light.sampler.sample(index - light.first, &mut random);
         // The dimensions that lead to the ray come first, then the flight.
-        let [a, b, c, d, _] = sample;
-        let flight_quantile = sample[light.emitter.dimensions()];
+        let [a, b, c, d, e] = sample;
+        let flight_quantile = match sample.get(light.emitter.dimensions()) {
+            Some(&quantile) => quantile,
+            None => uniform(&mut random),
+        };
         let (place, density) = match &light.guide {
             Some(guide) => guide.warp(DVec2::new(a, b)),
             None => (DVec2::new(a, b), 1.0),
         };
-        let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d])?;
+        let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d, e])?;
         let power = power / (light.count as f64 * density);
         let boost = (light.collision_boost / density).max(1.0);
         let first_flight = BoostedQuantile { u: flight_quantile, boost };
-        Some(EmittedPhoton { ray, power, first_flight, random })
+        let is_from_medium = light.emitter.is_medium();
+        Some(EmittedPhoton { ray, power, first_flight, random, is_from_medium })
     }
 }
 
@@ -144,7 +153,7 @@ fn guide_of(emitter: &Emitter, opacity: &impl Fn(&Ray) -> f64, index: u64) -> (O
     let mut inner = random.clone();
     if emitter.dimensions() == 2 {
         let of_place = |p: DVec2| {
-            emitter.sample_ray([p.x, p.y, 0.5, 0.5]).map_or(0.0, |(ray, _)| opacity(&ray))
+            emitter.sample_ray([p.x, p.y, 0.5, 0.5, 0.5]).map_or(0.0, |(ray, _)| opacity(&ray))
         };
         return match Guide::new(&mut random, of_place) {
             Some((guide, mean)) => (Some(guide), 1.0 / mean),
@@ -215,7 +224,15 @@ mod tests {
     #[test]
     fn first_flights_are_stratified() {
         use crate::light::{Environment, PointLight};
-        let bounds = Bounds::Sphere { center: DVec3::ZERO, radius: 1.0 };
+        use crate::medium::{Bounds, MediumExtinction, Phase, UniformExtinction};
+        let medium = Medium {
+            bounds: Bounds::Sphere { center: DVec3::ZERO, radius: 1.0 },
+            extinction: MediumExtinction::Uniform(UniformExtinction { sigma_t: 1.0 }),
+            albedo: Rgb::ONE,
+            color: None,
+            phase: Phase::Isotropic,
+            emissivity: None,
+        };
         let point =
             Light::Point(PointLight { position: DVec3::new(0.1, 0.0, 0.0), intensity: Rgb::ONE });
         let sky = Light::Environment(Environment::Constant(Rgb::ONE));
@@ -226,7 +243,7 @@ mod tests {
                 (EmissionKind::Stratified, 0.0..0.4),
                 (EmissionKind::Sobol, 0.0..0.02),
             ] {
-                let emission = Emission::new(&light, &bounds, |_| 0.5, 1.0, kind, 4096, 3);
+                let emission = Emission::new(&light, &medium, |_| 0.5, 1.0, kind, 4096, 3);
                 let mut counts = vec![0.0; bins];
                 for index in 0..4096 {
                     let photon = emission.photon(index).expect("a photon");

@@ -52,9 +52,9 @@ impl Film {
 /// All layers of one pixel. Radiance is their sum: single + multiple scattering + emission.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pixel {
-    /// Light scattered once \[W/(m^2 sr)\].
+    /// Light of lights, scattered once \[W/(m^2 sr)\].
     pub single_scatter: Rgb,
-    /// Light scattered twice or more.
+    /// Light scattered twice or more; of the medium's own light, all that is scattered.
     pub multiple_scatter: Rgb,
     /// Light that comes unscattered: background, area lights and the medium's own, through the medium.
     pub emission: Rgb,

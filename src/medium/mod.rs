@@ -1,11 +1,15 @@
 //! Participating media: what fills the scene, how it attenuates light, and how it scatters it.
 //!
-//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo and a
-//! phase [`Phase`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
+//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo (one for all, or coloured
+//! place by place), a phase [`Phase`] and, where it glows, an [`Emissivity`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
 //! pays nothing for grids.
 
 mod ball_points;
+mod blackbody;
 mod bounds;
+mod cie_1931;
+mod emissive_cells;
+mod emissivity;
 pub mod grid;
 mod homogeneous;
 mod moments;
@@ -16,8 +20,11 @@ mod profile;
 
 pub mod vdb;
 
+pub use blackbody::{blackbody_radiance, blackbody_xyz};
 pub use bounds::{Bounds, Face, Parallelepiped};
-pub use grid::GridExtinction;
+pub use emissive_cells::{EmissiveCells, EmissivePlace};
+pub use emissivity::{Emissivity, Flame};
+pub use grid::{ColorGrid, GridExtinction, ValueGrid};
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
 pub use moments::BallMoments;
 pub use overlap::BallIntegral;
@@ -33,10 +40,61 @@ pub struct Medium {
     pub bounds: Bounds,
     /// How strongly it attenuates.
     pub extinction: MediumExtinction,
-    /// sigma_s / sigma_t per channel, in \[0, 1\].
+    /// sigma_s / sigma_t per channel, in \[0, 1\]: everywhere, or where `color` is white.
     pub albedo: Rgb,
+    /// What the albedo is multiplied by, place by place.
+    pub color: Option<Box<ColorGrid>>,
     /// Where scattered light goes.
     pub phase: Phase,
+    /// Light of its own.
+    pub emissivity: Option<Box<Emissivity>>,
+}
+
+impl Medium {
+    /// The medium with light of its own; an infinite one has none.
+    pub fn with_emissivity(mut self, emissivity: Emissivity) -> Self {
+        if matches!(self.bounds, Bounds::Infinite) {
+            return self;
+        }
+        let voxel_size = emissivity.voxel_size();
+        self.emissivity = Some(Box::new(emissivity));
+        let cells = EmissiveCells::new(&self, voxel_size);
+        if let Some(emissivity) = &mut self.emissivity {
+            emissivity.set_cells(cells);
+        }
+        self
+    }
+
+    /// Emissivity at a place \[W/(m^3 sr)\]; 0 outside the bounds.
+    pub fn emissivity_at(&self, position: DVec3) -> Rgb {
+        let Some(emissivity) = &self.emissivity else { return Rgb::ZERO };
+        if !self.bounds.contains(position) {
+            return Rgb::ZERO;
+        }
+        let flame = emissivity.flame(position);
+        match emissivity.blackbody(position) {
+            Rgb::ZERO => flame,
+            blackbody => {
+                let sigma_t = self.extinction.sigma_t(position);
+                flame + blackbody * sigma_t * (Rgb::ONE - self.albedo_at(position))
+            }
+        }
+    }
+
+    /// The albedo at a place: the medium's own times its colour there, each channel at most 1.
+    #[inline]
+    pub fn albedo_at(&self, position: DVec3) -> Rgb {
+        match &self.color {
+            None => self.albedo,
+            Some(color) => (self.albedo * color.color(position)).min(Rgb::ONE),
+        }
+    }
+
+    /// No place has a larger albedo.
+    pub fn max_albedo(&self) -> Rgb {
+        let color = self.color.as_ref().map_or(Rgb::ONE, |color| color.max());
+        (self.albedo * color).min(Rgb::ONE)
+    }
 }
 
 /// The kinds of extinction a scene may hold. Match once, outside the loops, and go on with the one found.
@@ -48,6 +106,17 @@ pub enum MediumExtinction {
     Chromatic(ChromaticExtinction),
     /// sigma_t = density_scale * density, from a VDB grid.
     Grid(Box<GridExtinction>),
+}
+
+impl MediumExtinction {
+    /// sigma_t at a place, whatever the kind \[1/m\].
+    pub fn sigma_t(&self, position: DVec3) -> Rgb {
+        match self {
+            Self::Uniform(uniform) => uniform.sigma_t(position),
+            Self::Chromatic(chromatic) => chromatic.sigma_t(position),
+            Self::Grid(grid) => grid.sigma_t(position),
+        }
+    }
 }
 
 /// How strongly a medium attenuates light along rays. `Span`s passed in lie inside the medium's bounds.

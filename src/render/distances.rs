@@ -22,8 +22,12 @@ pub struct ByTransmittance<'a> {
 impl<'a> ByTransmittance<'a> {
     /// Sampling of `span`, a part of the profile's; `None` where it has no extinction.
     pub fn new(profile: &'a RayProfile, span: Span) -> Option<Self> {
-        let depth_before = profile.optical_depth(span.start);
-        let depth = profile.optical_depth(span.end) - depth_before;
+        Self::between(profile, profile.optical_depth(span.start), profile.optical_depth(span.end))
+    }
+
+    /// Sampling of the part of the profile between two optical depths.
+    pub fn between(profile: &'a RayProfile, depth_before: Rgb, depth_after: Rgb) -> Option<Self> {
+        let depth = depth_after - depth_before;
         let opacity = Rgb::new(-(-depth.x).exp_m1(), -(-depth.y).exp_m1(), -(-depth.z).exp_m1());
         let channels = if depth.x == depth.y && depth.y == depth.z { 1 } else { 3 };
         (opacity.max_element() > 0.0).then_some(Self { profile, depth_before, opacity, channels })

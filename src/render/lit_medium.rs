@@ -43,7 +43,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         let started = Instant::now();
         let emission = Emission::new(
             &scene.lights,
-            &medium.bounds,
+            medium,
             |ray| {
                 let span = medium.bounds.intersect(ray);
                 span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))

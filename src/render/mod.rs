@@ -4,6 +4,7 @@
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
 mod distances;
+mod emitted_light;
 mod film_pass;
 mod lit_medium;
 mod lit_scene;

@@ -4,6 +4,7 @@ use crate::estimate::{Estimator, InScattered};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
+use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
@@ -12,11 +13,11 @@ use crate::scene::Scene;
 /// Light along a ray, by its way through the medium.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayRadiance {
-    /// Scattered once \[W/(m^2 sr)\].
+    /// Of lights, scattered once \[W/(m^2 sr)\].
     pub single_scatter: Rgb,
-    /// Scattered twice or more.
+    /// Scattered twice or more; of the medium's own light, all that is scattered.
     pub multiple_scatter: Rgb,
-    /// From lights seen directly, attenuated.
+    /// From lights seen directly, and of the medium's own, attenuated.
     pub emission: Rgb,
     /// Transmittance of the ray's whole part in the medium.
     pub transmittance: Rgb,
@@ -96,6 +97,10 @@ impl<'a, E: Extinction> Reader<'a, E> {
             transmittance: exp(-profile.optical_depth(span.end)),
             ..RayRadiance::default()
         };
+        if let Some(emissivity) = &self.scene.medium.emissivity {
+            let medium = &self.scene.medium;
+            radiance.emission += emitted_light(medium, emissivity, ray, span, profile, random);
+        }
         if !self.scene.render.photons_only {
             radiance.single_scatter = self.single_scatter(ray, span, skipped, random);
         }
@@ -153,7 +158,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count)
-                * self.scene.medium.albedo;
+                * self.scene.medium.albedo_at(place);
             let (towards, turn) = (-ray.direction, uniform(random));
             queries.push(PhotonQuery { place, towards, weight, turn, pixel });
         }

@@ -64,9 +64,9 @@ impl<E: Extinction> ScatteringRay<'_, E> {
             let place = self.ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count);
-            sum += weight * scattered(place, random);
+            sum += weight * scattered(place, random) * self.medium.albedo_at(place);
         }
-        sum * self.medium.albedo
+        sum
     }
 
     /// Distances by both densities.
@@ -96,10 +96,11 @@ impl<E: Extinction> ScatteringRay<'_, E> {
                 + far as f64 * by_transmittance.pdf_distance(transmittance, sigma_t);
             if density > 0.0 && sigma_t != Rgb::ZERO {
                 let light = self.light_towards_camera(light, place, random);
-                sum += transmittance * sigma_t * light / density;
+                let albedo = self.medium.albedo_at(place);
+                sum += transmittance * sigma_t * light * albedo / density;
             }
         }
-        sum * self.medium.albedo
+        sum
     }
 
     /// Phase-weighted light from one sampled direction of a light, attenuated on its way.

@@ -3,23 +3,27 @@
 
 use std::path::Path;
 
-use super::environment;
 use super::error::Problem;
 use super::file::{LightSection, MediumSection};
+use super::grid_reader::GridReader;
+use super::grid_use::GridUse;
 use super::hash::FileHashes;
-use super::volume::{DensityVolume, VolumeRules};
+use super::volume::{self, DensityVolume, VolumeRules};
+use super::{emission, environment};
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
 };
 use crate::math::Rgb;
 use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
 
-/// The medium, with `warnings` of what had to be mended in its file, and that file's hash.
+/// The medium, with `warnings` of what had to be mended in its file, the `grids` of that file that it uses, and the
+/// file's hash.
 pub(super) fn medium(
     section: &MediumSection,
     directory: &Path,
     rules: &VolumeRules,
     warnings: &mut Vec<String>,
+    grids: &mut Vec<GridUse>,
     hashes: &mut FileHashes,
 ) -> Result<Medium, Problem> {
     match section {
@@ -27,7 +31,9 @@ pub(super) fn medium(
             bounds: bounds.bounds(),
             extinction: homogeneous_extinction(*sigma_t),
             albedo: *albedo,
+            color: None,
             phase: phase.phase(),
+            emissivity: None,
         }),
         MediumSection::Vdb {
             file,
@@ -36,19 +42,30 @@ pub(super) fn medium(
             sdf_to_fog,
             precision,
             albedo,
+            color,
             phase,
+            emission,
             transform,
         } => {
-            let volume = DensityVolume {
-                file: &directory.join(file),
+            let source = volume::open(&directory.join(file), rules)?;
+            hashes.insert("medium.file".into(), source.content_hash());
+            let transform = transform.affine();
+            let mut reader = GridReader { source: &source, transform, rules, warnings, grids };
+            let density = DensityVolume {
                 grid: density.as_deref(),
                 sdf_to_fog: *sdf_to_fog,
                 precision: *precision,
                 density_scale: *density_scale,
-                transform: transform.affine(),
             };
-            let (bounds, extinction) = volume.read(rules, warnings, hashes)?;
-            Ok(Medium { bounds, extinction, albedo: *albedo, phase: phase.phase() })
+            let (bounds, extinction) = density.read(&mut reader)?;
+            let color = color.as_deref().map(|name| reader.read_color(name).map(Box::new));
+            let (color, phase) = (color.transpose()?, phase.phase());
+            let medium =
+                Medium { bounds, extinction, albedo: *albedo, color, phase, emissivity: None };
+            match emission {
+                Some(section) => emission::read(section, medium, &mut reader),
+                None => Ok(medium),
+            }
         }
     }
 }

@@ -15,10 +15,12 @@ const RAYS_PER_AXIS: usize = 8;
 /// probability a p, up to the largest order followed.
 pub(super) fn expected_collisions(scene: &Scene) -> f64 {
     let chords = Chords::of(scene);
-    let again = max_channel(scene.medium.albedo) * (1.0 - 1.0 / (1.0 + chords.optical_depth));
+    let again = max_channel(scene.medium.max_albedo()) * (1.0 - 1.0 / (1.0 + chords.optical_depth));
     let orders = f64::from(scene.photons.max_order);
     let geometric = (1.0 - again.powf(orders)) / (1.0 - again);
-    chords.first_collision * if again < 1.0 { geometric } else { orders }
+    // Photons of the medium's own start inside, and are made to collide.
+    let first = if scene.medium.emissivity.is_some() { 1.0 } else { chords.first_collision };
+    first * if again < 1.0 { geometric } else { orders }
 }
 
 /// Straight ways through a medium.

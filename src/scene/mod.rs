@@ -7,10 +7,13 @@
 //! [`Scene`] has opened the files it names, too, and nothing in it can be out of range.
 
 mod build;
+mod emission;
 mod environment;
 mod error;
 mod expected_collisions;
 mod file;
+mod grid_reader;
+mod grid_use;
 mod hash;
 mod light_counts;
 mod overrides;
@@ -20,9 +23,11 @@ mod volume;
 
 pub use error::SceneError;
 pub use file::{
-    BoundsSection, CameraSection, EstimateSettings, LightSection, MediumSection, PhaseSection,
-    PhotonSettings, RenderSettings, SceneFile, TransformSection,
+    BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys, LightSection,
+    MediumSection, PhaseSection, PhotonSettings, RenderSettings, SceneFile, TemperatureKeys,
+    TransformSection,
 };
+pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
 pub use overrides::Overrides;
 pub use plan::{MediumKind, Plan};
@@ -43,7 +48,7 @@ pub struct Scene {
     pub camera: Camera,
     /// What fills it.
     pub medium: Medium,
-    /// At least one.
+    /// At least one, unless the medium has light of its own.
     pub lights: Vec<Light>,
     /// How photons are emitted and followed.
     pub photons: PhotonSettings,
@@ -54,6 +59,8 @@ pub struct Scene {
     /// Of all values above, including the content of files they came from: equal for scenes that give the same
     /// image, however their files are written.
     pub hash: u64,
+    /// The grids that the medium is made of.
+    pub grids: Vec<GridUse>,
     /// What was mended on loading, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -79,9 +86,10 @@ impl Scene {
     }
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
-        let mut warnings = Vec::new();
+        let (mut warnings, mut grids) = (Vec::new(), Vec::new());
         let mut hashes = hash::FileHashes::new();
-        let medium = build::medium(&file.medium, directory, rules, &mut warnings, &mut hashes)?;
+        let medium =
+            build::medium(&file.medium, directory, rules, &mut warnings, &mut grids, &mut hashes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
@@ -94,6 +102,7 @@ impl Scene {
             estimate: file.estimate,
             render: file.render,
             hash: hash::scene_hash(file, directory, &hashes)?,
+            grids,
             warnings,
         })
     }

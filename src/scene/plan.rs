@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::Scene;
 use super::expected_collisions::expected_collisions;
 use super::file::emission_word;
+use super::grid_use::{GridRole, GridUse};
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
 use crate::medium::{MediumExtinction, Phase};
@@ -20,6 +21,8 @@ pub struct Plan {
     pub isotropic: bool,
     /// Whether sigma_t or the albedo differs between the channels.
     pub chromatic: bool,
+    /// The grids used, in the order in which they were read.
+    pub grids: Vec<GridUse>,
     /// Lights of each kind.
     pub lights: LightCounts,
     /// Whether free flights are sampled against majorants (delta tracking) rather than in closed form.
@@ -61,7 +64,9 @@ impl Plan {
             medium: if is_grid { MediumKind::Grid } else { MediumKind::Homogeneous },
             isotropic: medium.phase == Phase::Isotropic,
             chromatic: matches!(medium.extinction, MediumExtinction::Chromatic(_))
-                || medium.albedo != Rgb::splat(medium.albedo.x),
+                || medium.albedo != Rgb::splat(medium.albedo.x)
+                || medium.color.is_some(),
+            grids: scene.grids.clone(),
             lights: LightCounts::of(&scene.lights),
             majorants: is_grid,
             photons: scene.photons.count,
@@ -74,16 +79,26 @@ impl Plan {
     }
 }
 
-/// Two lines: what the medium needs, and what the photons cost.
+/// What the medium needs, a line for each grid, and what the photons cost.
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let glows = |grid: &GridUse| matches!(grid.role, GridRole::Temperature | GridRole::Flame);
         let (medium, needs) = match self.medium {
             MediumKind::Homogeneous => ("homogeneous", "no grid, no majorants, no emission"),
+            MediumKind::Grid if self.grids.iter().any(glows) => {
+                ("density grid", "majorants, emission")
+            }
             MediumKind::Grid => ("density grid", "majorants, no emission"),
         };
         let phase = if self.isotropic { "isotropic" } else { "anisotropic" };
         let color = if self.chromatic { ", chromatic" } else { "" };
-        writeln!(f, "{medium}, {phase}{color}, {}: {needs}", self.lights)?;
+        let lights = self.lights.to_string();
+        let lights = if lights.is_empty() { "no light but its own" } else { &lights };
+        writeln!(f, "{medium}, {phase}{color}, {lights}: {needs}")?;
+        for grid in &self.grids {
+            let megabytes = grid.memory_bytes.div_ceil(1_000_000);
+            writeln!(f, "{} from grid {:?}, {megabytes} MB", grid.role.name(), grid.name)?;
+        }
         write!(
             f,
             "{} photons a pass ({}), k = {} (divisor {}); about {} stored, {} MB",

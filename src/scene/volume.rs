@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::error::Problem;
-use super::hash::FileHashes;
+use super::grid_reader::GridReader;
+use super::grid_use::GridRole;
 use crate::math::DAffine3;
 use crate::medium::grid::{BrickPrecision, DensityGrid};
 use crate::medium::vdb::{
     GridSummary, Limits, SparseGrid, VdbError, VdbFile, VolumeSource, find_density,
-    find_density_or_level_set, fog_of_level_set, sanitize_density,
+    find_density_or_level_set, fog_of_level_set,
 };
 use crate::medium::{Bounds, GridExtinction, MediumExtinction, UniformExtinction};
 
@@ -23,8 +24,6 @@ pub(super) struct VolumeRules {
 
 /// A density grid of a file, and how a scene uses it: sigma_t = density_scale * density \[1/m\].
 pub(super) struct DensityVolume<'a> {
-    /// The VDB file.
-    pub file: &'a Path,
     /// Name of the grid, if the scene gives one.
     pub grid: Option<&'a str>,
     /// Whether a level set is filled with fog.
@@ -33,36 +32,37 @@ pub(super) struct DensityVolume<'a> {
     pub precision: BrickPrecision,
     /// Extinction of density 1 \[1/m\].
     pub density_scale: f64,
-    /// From the file's world to the scene's.
-    pub transform: DAffine3,
+}
+
+/// Opens the file of a volume.
+pub(super) fn open(file: &Path, rules: &VolumeRules) -> Result<VdbFile, Problem> {
+    VdbFile::open_within(file, &rules.limits)
+        .map_err(|error| Problem::new("medium.file", error.to_string()))
 }
 
 impl DensityVolume<'_> {
-    /// Reads the extinction and where it is. Pushes a sentence on `warnings` for whatever was mended, and enters the
-    /// file's hash in `hashes`.
+    /// Reads the extinction and where it is.
     pub(super) fn read(
         &self,
-        rules: &VolumeRules,
-        warnings: &mut Vec<String>,
-        hashes: &mut FileHashes,
+        reader: &mut GridReader,
     ) -> Result<(Bounds, MediumExtinction), Problem> {
-        let source =
-            VdbFile::open_within(self.file, &rules.limits).map_err(|error| in_file(&error))?;
-        let index = self.find(&source)?;
-        let name = format!("grid {:?} of {}", source.grids()[index].unique_name, source.name());
-        let stored = source.load_scalar(index, &rules.limits).map_err(|error| in_grid(&error))?;
-        let mut sparse = self.density(stored, &source.grids()[index], &name, warnings);
-        mend(&mut sparse, &name, rules.strict, warnings)?;
+        let source = reader.source;
+        let index = self.find(source)?;
+        let summary = &source.grids()[index];
+        let unique_name = summary.unique_name.as_str();
+        let name = reader.shown(unique_name);
+        let limits = &reader.rules.limits;
+        let stored = source.load_scalar(index, limits).map_err(|error| in_grid(&error))?;
+        let mut sparse = self.density(stored, summary, &name, reader.warnings);
+        reader.mend(&mut sparse, GridRole::Density, unique_name)?;
         if let Some(damage) = source.damage() {
             let name = source.name();
-            warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
+            reader.warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
         }
 
-        hashes.insert("medium.file".into(), source.content_hash());
-        // The bricks are made from the voxels alone.
-        drop(source);
-        let index_to_world = self.transform * sparse.index_to_world;
-        let grid = DensityGrid::build(&sparse, self.precision, &rules.limits).map_err(|error| {
+        let index_to_world = reader.transform * sparse.index_to_world;
+        let limits = source.limits_beside(&reader.rules.limits);
+        let grid = DensityGrid::build(&sparse, self.precision, &limits).map_err(|error| {
             Problem::new("medium.density", format!("{name} cannot be used: {error}"))
         })?;
         drop(sparse);
@@ -70,6 +70,7 @@ impl DensityVolume<'_> {
             let text = format!("{name} is empty: no density is above 0");
             return Err(Problem::new("medium.density", text));
         }
+        reader.note(GridRole::Density, unique_name, grid.statistics().memory_bytes);
         place(grid, index_to_world, self.density_scale)
     }
 
@@ -100,38 +101,8 @@ impl DensityVolume<'_> {
     }
 }
 
-fn in_file(error: &VdbError) -> Problem {
-    Problem::new("medium.file", error.to_string())
-}
-
 fn in_grid(error: &VdbError) -> Problem {
     Problem::new("medium.density", error.to_string())
-}
-
-/// Sets to 0 what cannot be a density and says so; an error when `strict`.
-fn mend(
-    grid: &mut SparseGrid<f32>,
-    name: &str,
-    strict: bool,
-    warnings: &mut Vec<String>,
-) -> Result<(), Problem> {
-    let mended = sanitize_density(grid);
-    if mended.total() == 0 {
-        return Ok(());
-    }
-    let found = format!(
-        "{name}: {} values are no densities ({} NaN, {} infinite, {} negative)",
-        mended.total(),
-        mended.nan,
-        mended.infinite,
-        mended.negative,
-    );
-    if strict {
-        let text = format!("{found}; mend the file, or leave out --strict to count them as 0");
-        return Err(Problem::new("medium.density", text));
-    }
-    warnings.push(format!("{found}; they count as 0"));
-    Ok(())
 }
 
 /// A grid in the world. At scale 0 all that is left of it is its bounds.

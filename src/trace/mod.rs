@@ -28,7 +28,8 @@ const SHARE: u64 = 8192;
 pub struct TraceSettings {
     /// Scatterings followed.
     pub max_order: u32,
-    /// Collisions of lower order are not stored: 1 where single scattering is computed without photons.
+    /// Collisions of lower order are not stored: 1 where single scattering is computed without photons. Of photons that the
+    /// medium itself emitted all are.
     pub min_stored_order: u32,
     /// Most photons to store; tracing stops beyond.
     pub max_stored: usize,
@@ -113,7 +114,8 @@ impl<'a, E: Extinction> Path<'a, E> {
 
     /// Follows one photon from its light to its end.
     fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, first_flight, mut random } = photon;
+        let EmittedPhoton { mut ray, mut power, first_flight, mut random, is_from_medium } = photon;
+        let min_stored_order = if is_from_medium { 0 } else { self.settings.min_stored_order };
         self.balance.emitted += power;
         for order in 0.. {
             let Some(span) = self.medium.bounds.intersect(&ray) else { break };
@@ -140,12 +142,14 @@ impl<'a, E: Extinction> Path<'a, E> {
                 }
             };
             ray.origin = ray.at(distance);
-            self.store(&ray, power, order);
+            if order >= min_stored_order {
+                self.store(&ray, power, order);
+            }
             if order >= self.settings.max_order {
                 self.balance.truncated += power;
                 return;
             }
-            let scattered = power * self.medium.albedo;
+            let scattered = power * self.medium.albedo_at(ray.origin);
             let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
             if survival < 1.0 && uniform(&mut random) >= survival {
                 self.balance.absorbed += power;
@@ -168,9 +172,6 @@ impl<'a, E: Extinction> Path<'a, E> {
 
     /// Stores the collision at the ray's origin.
     fn store(&mut self, ray: &Ray, power: Rgb, order: u32) {
-        if order < self.settings.min_stored_order {
-            return;
-        }
         let sigma_t =
             if E::IS_UNIFORM { 0.0 } else { self.extinction.sigma_t(ray.origin).max_element() };
         self.photons.push(Photon {

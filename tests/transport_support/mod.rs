@@ -36,7 +36,7 @@ pub fn fog(bounds: Bounds, sigma_t: Rgb, albedo: Rgb, g: f64) -> Medium {
         true => MediumExtinction::Uniform(UniformExtinction { sigma_t: sigma_t.x }),
         false => MediumExtinction::Chromatic(ChromaticExtinction { sigma_t }),
     };
-    Medium { bounds, extinction, albedo, phase: phase(g) }
+    Medium { bounds, extinction, albedo, color: None, phase: phase(g), emissivity: None }
 }
 
 pub fn grey_fog(bounds: Bounds, sigma_t: f64, albedo: f64, g: f64) -> Medium {
@@ -49,7 +49,9 @@ pub fn grid_medium(extinction: GridExtinction, albedo: Rgb, g: f64) -> Medium {
         bounds,
         extinction: MediumExtinction::Grid(Box::new(extinction)),
         albedo,
+        color: None,
         phase: phase(g),
+        emissivity: None,
     }
 }
 
@@ -93,6 +95,7 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             photons_only: false,
         },
         hash: 0,
+        grids: Vec::new(),
         warnings: Vec::new(),
     }
 }
@@ -126,7 +129,7 @@ pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E) -> Emission
         span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
     };
     let PhotonSettings { count, emission, seed, .. } = *photons;
-    Emission::new(lights, &medium.bounds, opacity, 1.0, emission, count, seed)
+    Emission::new(lights, medium, opacity, 1.0, emission, count, seed)
 }
 
 /// Power of a stored photon's channel \[W\].
@@ -135,7 +138,7 @@ pub fn power(photon: &Photon, channel: usize) -> f64 {
 }
 
 pub fn frame(scene: &Scene) -> MapFrame {
-    MapFrame::of(&scene.medium, scene.lights[0].position())
+    MapFrame::of(&scene.medium, scene.lights.first().and_then(|light| light.position()))
 }
 
 /// What a figure comes to over the scene's seeds 0, 1, ... `RUNS`.

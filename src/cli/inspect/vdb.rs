@@ -169,7 +169,11 @@ fn refusal(summary: &GridSummary) -> Option<String> {
     }
     if !summary.is_usable_scalar() {
         let value_type = &summary.value_type;
-        return Some(format!("it holds {value_type} values, and a density is one number a voxel"));
+        let use_of_vectors =
+            if value_type.starts_with("vec3") { " (it may be a scene's color)" } else { "" };
+        return Some(format!(
+            "it holds {value_type} values, and a density is one number a voxel{use_of_vectors}"
+        ));
     }
     let level_set = "it is a level set, which holds distances to a surface; \
                      render with --sdf-to-fog to fill it with fog";

@@ -115,7 +115,7 @@ impl Study {
             method: Method::Fast,
             seed,
         };
-        Ok(Self { table: request.tabulate(|model| progress(model))? })
+        Ok(Self { table: request.tabulate(progress)? })
     }
 
     /// The rows of one constant, by k.

@@ -96,6 +96,13 @@ impl DensityGrid {
         Some((corner(min.map(|c| c - 1)), corner(max.map(|c| c + 1))))
     }
 
+    /// First and last active voxel on each axis, as shares of the render bounds.
+    pub(super) fn active_extent(&self) -> [[f64; 3]; 2] {
+        let cells: [f64; 3] =
+            std::array::from_fn(|axis| (self.last[axis] - self.first[axis] + 1) as f64);
+        [cells.map(|count| 1.0 / count), cells.map(|count| 1.0 - 1.0 / count)]
+    }
+
     /// Counts, extremes and memory.
     pub fn statistics(&self) -> GridStatistics {
         GridStatistics {
@@ -122,15 +129,20 @@ impl DensityGrid {
         std::array::from_fn(|axis| (point[axis] as i64).clamp(self.first[axis], self.last[axis]))
     }
 
-    /// Density at a point in local coordinates; 0 outside the render bounds.
+    /// Whether a point in local coordinates lies inside the render bounds.
     #[inline]
-    pub(super) fn local_density(&self, point: [f64; 3]) -> f64 {
-        let is_inside = self.active.is_some()
+    pub(super) fn bounds_hold(&self, point: [f64; 3]) -> bool {
+        self.active.is_some()
             && (0..3).all(|axis| {
                 point[axis] >= self.first[axis] as f64
                     && point[axis] <= (self.last[axis] + 1) as f64
-            });
-        if !is_inside {
+            })
+    }
+
+    /// Density at a point in local coordinates; 0 outside the render bounds.
+    #[inline]
+    pub(super) fn local_density(&self, point: [f64; 3]) -> f64 {
+        if !self.bounds_hold(point) {
             return 0.0;
         }
         let cell = self.cell_at(point);

@@ -26,8 +26,8 @@ pub struct GridExtinction {
 /// The map from world to the grid's local coordinates, taken about the grid's centre so that a grid far from
 /// the world's origin, or of tiny voxels, keeps its digits.
 #[derive(Debug)]
-struct Placement {
-    bounds: Parallelepiped,
+pub(super) struct Placement {
+    pub(super) bounds: Parallelepiped,
     world_center: DVec3,
     local_center: DVec3,
     world_to_local: DMat3,
@@ -82,7 +82,7 @@ impl GridExtinction {
 }
 
 impl Placement {
-    fn new(grid: &DensityGrid, index_to_world: &DAffine3) -> Option<Self> {
+    pub(super) fn new(grid: &DensityGrid, index_to_world: &DAffine3) -> Option<Self> {
         let (min, max) = grid.render_bounds()?;
         let linear = index_to_world.matrix3;
         let world_to_local = linear.inverse();
@@ -103,7 +103,7 @@ impl Placement {
     }
 
     #[inline]
-    fn local_point(&self, position: DVec3) -> DVec3 {
+    pub(super) fn local_point(&self, position: DVec3) -> DVec3 {
         self.local_center + self.world_to_local * (position - self.world_center)
     }
 

@@ -2,7 +2,7 @@
 //!
 //! [`DensityGrid`] holds the voxels of a [`SparseGrid`](crate::medium::vdb::SparseGrid) as bricks with aprons below a
 //! sparse index. Rays walk its blocks: delta tracking with one majorant a block, or voxel cells for exact
-//! optical depths. [`GridExtinction`] places a grid in the world.
+//! optical depths. [`GridExtinction`] places a grid in the world; [`ColorGrid`] and [`ValueGrid`] are read at points.
 //!
 //! # Memory
 //!
@@ -27,6 +27,7 @@ mod brick_index;
 mod brick_plan;
 mod budget;
 mod cell_walk;
+mod color_grid;
 pub(super) mod cubic;
 mod delta_tracking;
 mod density_grid;
@@ -38,9 +39,12 @@ mod slot;
 #[cfg(test)]
 mod test_grids;
 mod trilinear;
+mod value_grid;
 mod voxel_source;
 
 pub use brick_atlas::BrickPrecision;
 pub use budget::DensityGridError;
+pub use color_grid::ColorGrid;
 pub use density_grid::{DensityGrid, GridStatistics};
 pub use extinction::GridExtinction;
+pub use value_grid::ValueGrid;

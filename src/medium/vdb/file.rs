@@ -58,6 +58,11 @@ impl VdbFile {
         Self::list("the VDB in memory".into(), Contents::of_bytes(bytes), 0)
     }
 
+    /// What is left of some limits while the file's bytes are held.
+    pub fn limits_beside(&self, limits: &Limits) -> Limits {
+        Limits { max_bytes: limits.max_bytes.saturating_sub(self.held_bytes) }
+    }
+
     /// A hash of all bytes of the file.
     pub fn content_hash(&self) -> u64 {
         self.contents.hash

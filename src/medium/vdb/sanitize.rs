@@ -37,7 +37,8 @@ impl SanitizeCount {
         self
     }
 
-    fn sum(self, other: Self) -> Self {
+    /// Both counts together.
+    pub fn sum(self, other: Self) -> Self {
         Self {
             nan: self.nan + other.nan,
             infinite: self.infinite + other.infinite,

@@ -30,6 +30,26 @@ impl<T> SparseGrid<T> {
     }
 }
 
+impl<T: Copy> SparseGrid<T> {
+    /// The grid with every value converted.
+    pub fn map<U>(&self, convert: impl Fn(T) -> U) -> SparseGrid<U> {
+        let tile = |tile: &Tile<T>| Tile {
+            origin: tile.origin,
+            dim: tile.dim,
+            value: convert(tile.value),
+            active: tile.active,
+        };
+        SparseGrid {
+            background: convert(self.background),
+            index_to_world: self.index_to_world,
+            leaves: self.leaves.clone(),
+            masks: self.masks.clone(),
+            values: self.values.iter().map(|&value| convert(value)).collect(),
+            tiles: self.tiles.iter().map(tile).collect(),
+        }
+    }
+}
+
 /// A constant cube of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile<T> {

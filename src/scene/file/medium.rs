@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Serialize, Serializer};
 
 use super::bounds::BoundsSection;
+use super::emission::EmissionSection;
 use super::phase::PhaseSection;
 use super::table::{OneOrThree, Table};
 use super::transform::TransformSection;
@@ -35,12 +36,15 @@ pub enum MediumSection {
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
     /// | `sdf_to_fog` | boolean | | false | | fill a level set with fog: density 0 on its surface, 1 at depth |
     /// | `precision` | text | | `"single"` | | `"single"` or `"half"`: see [`BrickPrecision`] |
-    /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
+    /// | `albedo` | number or RGB | | required; 1 with `color` | \[0, 1\] | sigma_s / sigma_t |
+    /// | `color` | text | | none | | name of a grid of vectors (vec3s or vec3d), linear RGB: the albedo is `albedo` times its value, each channel clamped to \[0, 1\] |
     /// | `phase` | table | | isotropic | | see [`PhaseSection`] |
     /// | `transform` | table | | identity | | see [`TransformSection`] |
     ///
-    /// The keys of blackbody emission (`temperature`, `temperature_offset`, `temperature_scale`,
-    /// `emission_scale`) are reserved and refused.
+    /// Grids may have transforms of their own. Each is trilinear between voxels, its background beyond the active ones:
+    /// where that is 0, a colour fades to black over the last voxel.
+    ///
+    /// [`EmissionSection`] has the keys that make it glow.
     Vdb {
         file: PathBuf,
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,30 +54,28 @@ pub enum MediumSection {
         #[serde(serialize_with = "serialize_precision")]
         precision: BrickPrecision,
         albedo: Rgb,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        color: Option<String>,
         phase: PhaseSection,
+        #[serde(flatten, skip_serializing_if = "Option::is_none")]
+        emission: Option<Box<EmissionSection>>,
         transform: TransformSection,
     },
 }
 
-const EMISSION_KEYS: [&str; 4] =
-    ["temperature", "temperature_offset", "temperature_scale", "emission_scale"];
+const HOMOGENEOUS_KEYS: [&str; 5] = ["kind", "bounds", "sigma_t", "albedo", "phase"];
 
-const KINDS: [(&str, &[&str]); 2] = [
-    ("homogeneous", &["kind", "bounds", "sigma_t", "albedo", "phase"]),
-    (
-        "vdb",
-        &[
-            "kind",
-            "file",
-            "density",
-            "density_scale",
-            "sdf_to_fog",
-            "precision",
-            "albedo",
-            "phase",
-            "transform",
-        ],
-    ),
+const VDB_KEYS: [&str; 10] = [
+    "kind",
+    "file",
+    "density",
+    "density_scale",
+    "sdf_to_fog",
+    "precision",
+    "albedo",
+    "color",
+    "phase",
+    "transform",
 ];
 
 const PRECISIONS: [(&str, BrickPrecision); 2] =
@@ -89,14 +91,16 @@ fn serialize_precision<S: Serializer>(
 
 impl MediumSection {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
-        let kind = table.require_choice("kind", &KINDS.map(|(kind, _)| (kind, kind)))?;
-        if let Some(key) = EMISSION_KEYS.into_iter().find(|key| table.has(key)) {
-            let text = "blackbody emission is not available yet; remove the key to render the \
-                        medium without its own light";
-            return Err(table.problem(key, text));
-        }
-        table.allow_for(kind, &KINDS)?;
+        let vdb_keys = [&VDB_KEYS[..], &EmissionSection::KEYS].concat();
+        let kinds = [("homogeneous", &HOMOGENEOUS_KEYS[..]), ("vdb", &vdb_keys[..])];
+        let kind = table.require_choice("kind", &kinds.map(|(kind, _)| (kind, kind)))?;
+        table.allow_for(kind, &kinds)?;
         if kind == "vdb" { Self::read_vdb(table) } else { Self::read_homogeneous(table) }
+    }
+
+    /// Whether it has light of its own.
+    pub(super) fn emits(&self) -> bool {
+        matches!(self, Self::Vdb { emission: Some(_), .. })
     }
 
     fn read_homogeneous(table: &Table) -> Result<Self, Problem> {
@@ -113,14 +117,21 @@ impl MediumSection {
     fn read_vdb(table: &Table) -> Result<Self, Problem> {
         let density_scale = table.get_or("density_scale", 1.0)?;
         table.ensure("density_scale", density_scale >= 0.0, "must not be below 0")?;
+        let color = table.get::<String>("color")?;
         Ok(Self::Vdb {
             file: table.require::<String>("file")?.into(),
             density: table.get("density")?,
             density_scale,
             sdf_to_fog: table.get_or("sdf_to_fog", false)?,
             precision: table.choose("precision", &PRECISIONS)?.unwrap_or_default(),
-            albedo: read_albedo(table)?,
+            albedo: if color.is_some() {
+                read_albedo_or_white(table)?
+            } else {
+                read_albedo(table)?
+            },
+            color,
             phase: PhaseSection::read(table)?,
+            emission: EmissionSection::read(table)?.map(Box::new),
             transform: TransformSection::read(table)?,
         })
     }
@@ -128,6 +139,15 @@ impl MediumSection {
 
 fn read_albedo(table: &Table) -> Result<Rgb, Problem> {
     let albedo = table.require::<OneOrThree>("albedo")?.0;
+    check_albedo(table, albedo)
+}
+
+fn read_albedo_or_white(table: &Table) -> Result<Rgb, Problem> {
+    let albedo = table.get_or("albedo", OneOrThree(Rgb::ONE))?.0;
+    check_albedo(table, albedo)
+}
+
+fn check_albedo(table: &Table, albedo: Rgb) -> Result<Rgb, Problem> {
     let in_range = albedo.min_element() >= 0.0 && albedo.max_element() <= 1.0;
     table.ensure("albedo", in_range, "must lie in [0, 1]")?;
     Ok(albedo)

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod camera;
+mod emission;
 mod estimate;
 mod light;
 mod medium;
@@ -16,6 +17,7 @@ mod transform;
 
 pub use bounds::BoundsSection;
 pub use camera::CameraSection;
+pub use emission::{EmissionSection, FlameKeys, TemperatureKeys};
 pub use estimate::EstimateSettings;
 pub use light::LightSection;
 pub use medium::MediumSection;
@@ -40,7 +42,7 @@ use table::Table;
 /// |---|---|---|
 /// | `[camera]` | required | where the image is taken from: [`CameraSection`] |
 /// | `[medium]` | required | what fills the scene: [`MediumSection`] |
-/// | `[[light]]` | at least one | what lights it: [`LightSection`] |
+/// | `[[light]]` | at least one, unless the medium glows | what lights it: [`LightSection`] |
 /// | `[photons]` | all defaults | how photons are emitted and followed: [`PhotonSettings`] |
 /// | `[estimate]` | all defaults | how the photon map is read: [`EstimateSettings`] |
 /// | `[render]` | all defaults | how pixels are sampled: [`RenderSettings`] |
@@ -92,7 +94,8 @@ impl SceneFile {
             estimate: EstimateSettings::read(&root.section("estimate")?)?,
             render: RenderSettings::read(&root.section("render")?)?,
         };
-        root.ensure("light", !file.lights.is_empty(), "the scene has no light; add a [[light]]")?;
+        let is_lit = !file.lights.is_empty() || file.medium.emits();
+        root.ensure("light", is_lit, "the scene has no light; add a [[light]]")?;
         Ok(file)
     }
 }

@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn chunks_are_packed_where_it_pays() {
-        let noise: Vec<u8> = (0..2048usize).map(|i| (i * i * 2_654_435_761 >> 7) as u8).collect();
+        let noise: Vec<u8> = (0..2048usize).map(|i| ((i * i * 2_654_435_761) >> 7) as u8).collect();
         let flat = vec![1; 2048];
         for codec in [Codec::Zip, Codec::Blosc] {
             let (packed, is_packed) = chunk(codec, &flat);
