@@ -11,7 +11,7 @@ pub fn directory() -> PathBuf {
 /// `PHOTONVDB_VDB_CORPUS`, or those of `shared/vdb` beside the repository.
 pub fn larger_corpora() -> Vec<PathBuf> {
     if let Some(named) = std::env::var_os("PHOTONVDB_VDB_CORPUS") {
-        return std::env::split_paths(&named).collect();
+        return std::env::split_paths(&named).filter(|path| path.is_dir()).collect();
     }
     let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/vdb");
     let directories = ["generated", "real"].map(|name| shared.join(name));
