@@ -123,14 +123,14 @@ fn a_damaged_vdb_is_an_error() {
 #[test]
 fn a_grid_of_vectors_shows_its_components() {
     let work = Workspace::new();
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vdb/vec3s_only.vdb");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vdb/type_vec3s_half.vdb");
     let run = work.run(&format!("inspect {path} --json"));
     let listing: Value = serde_json::from_str(&run.stdout).unwrap();
     let grid = &listing["grids"][0];
     for (key, expected) in [
-        ("min", [-2.4000000953674316, -2.299999952316284, 1.4543533325195312e-05]),
-        ("max", [2.299999952316284, 2.4000000953674316, 1.565636157989502]),
-        ("mean", [0.11151348842520985, 0.009321928506932937, 0.31612897880159535]),
+        ("min", [0.25439453125, -4.1015625, -1.7451171875]),
+        ("max", [1.7451171875, 4.1015625, -0.25439453125]),
+        ("mean", [1.413443521908783, 0.9000274301514046, -1.715220732494841]),
     ] {
         for (axis, expected) in expected.into_iter().enumerate() {
             let shown = grid[key][axis].as_f64().unwrap();
