@@ -215,7 +215,7 @@ fn volumes_are_read_as_the_flags_say() {
     let run = work.run("render volume.toml -o a.exr --sdf-to-fog");
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     work.run("render volume.toml -o b.exr --sdf-to-fog --max-volume-memory 100KiB")
-        .fails_with("the limit is 100.0 KiB");
+        .fails_with("the limit on memory is 100.0 KiB");
 
     scene("scene_volumes/nan_inf_neg.vdb");
     let run = work.run("render volume.toml -o c.exr");

@@ -117,7 +117,7 @@ fn a_level_set_is_listed_and_read_but_is_no_density() {
     assert!(file.grids()[0].is_level_set());
     file.load_scalar(0, &Limits::default()).unwrap();
     let error = message(find_density(&file, "surface", true));
-    assert!(error.contains("is a level set") && error.contains("fog volume"), "{error}");
+    assert!(error.contains("is a level set") && error.contains("--sdf-to-fog"), "{error}");
     let error = message(find_density(&file, "density", false));
     assert!(error.contains("\"surface\" (float, level set)"), "{error}");
 }

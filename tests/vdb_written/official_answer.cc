@@ -5,6 +5,7 @@
 //   ./official_answer mask.vdb > mask.json
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
 
 #include <cmath>
 #include <cstring>
@@ -88,6 +89,22 @@ struct Figures
     void add(const Vec3s&) {}
 };
 
+// Values between voxels, at a place in each of the first leaves.
+static void boxSamples(const FloatGrid& grid)
+{
+    std::cout << ",\"box_samples\":[";
+    const char* separator = "";
+    int count = 0;
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf && count < 16; ++leaf, ++count, separator = ",") {
+        const Vec3d index = leaf->origin().asVec3d() + Vec3d(0.37 * count, 5.3 - 0.29 * count, 2.6 + 0.11 * count);
+        const Vec3d world = grid.indexToWorld(index);
+        std::cout << separator << "\n{\"index\":[" << number(index[0]) << "," << number(index[1]) << ","
+            << number(index[2]) << "],\"world\":[" << number(world[0]) << "," << number(world[1]) << ","
+            << number(world[2]) << "],\"value\":" << number(tools::BoxSampler::sample(grid.tree(), index)) << "}";
+    }
+    std::cout << "]";
+}
+
 template<typename GridT> static void answer(const GridT& grid)
 {
     const auto& tree = grid.tree();
@@ -153,7 +170,9 @@ template<typename GridT> static void answer(const GridT& grid)
     }
     sample(Coord(3, 1, 2));
     sample(Coord(-100000, 7, 100000));
-    std::cout << "]}";
+    std::cout << "]";
+    if constexpr (std::is_same_v<GridT, FloatGrid>) boxSamples(grid);
+    std::cout << "}";
 }
 
 int main(int, char** arguments)
