@@ -118,15 +118,19 @@ impl BrickAtlas {
 
     /// The corners of cell (x, y, z), each in 0..8, of the brick.
     #[inline(always)]
-    pub(super) fn corners(&self, brick: usize, [x, y, z]: [usize; 3]) -> Corners {
-        let first = brick * BRICK_VOXELS + x * STRIDE_X + y * STRIDE_Y + z;
+    pub(super) fn corners(&self, brick: usize, place: [usize; 3]) -> Corners {
+        match self.brick(brick) {
+            Brick::Single(values) => single_corners(values, place),
+            Brick::Half(values, scale) => half_corners(values, place, scale),
+        }
+    }
+
+    /// The values of a brick.
+    #[inline(always)]
+    pub(super) fn brick(&self, brick: usize) -> Brick<'_> {
         match &self.encoding {
-            Encoding::Single => {
-                corners(&self.values, first, |bytes| f32::from_ne_bytes(bytes).into())
-            }
-            Encoding::Half(scale) => {
-                corners(&self.values, first, |bytes| scale.decode(u16::from_ne_bytes(bytes)))
-            }
+            Encoding::Single => Brick::Single(brick_values(&self.values, brick)),
+            Encoding::Half(scale) => Brick::Half(brick_values(&self.values, brick), scale),
         }
     }
 
@@ -147,10 +151,45 @@ fn store<const N: usize>(place: &mut [u8], values: [[u8; N]; BRICK_VOXELS]) {
     place.copy_from_slice(values.as_flattened());
 }
 
-/// The corners of the cell whose first one has this number.
+/// The values of one brick, encoded. Walks through a brick tell its encoding once, not at every cell.
+pub(super) enum Brick<'a> {
+    Single(&'a [[u8; SINGLE_BYTES]; BRICK_VOXELS]),
+    Half(&'a [[u8; HALF_BYTES]; BRICK_VOXELS], &'a HalfScale),
+}
+
 #[inline(always)]
-fn corners<const N: usize>(bytes: &[u8], first: usize, decode: impl Fn([u8; N]) -> f64) -> Corners {
-    let (v, _) = bytes[N * first..][..N * CORNER_REACH].as_chunks::<N>();
+fn brick_values<const N: usize>(bytes: &[u8], brick: usize) -> &[[u8; N]; BRICK_VOXELS] {
+    &bytes.as_chunks::<N>().0.as_chunks::<BRICK_VOXELS>().0[brick]
+}
+
+/// The corners of a cell of a brick of single values.
+#[inline(always)]
+pub(super) fn single_corners(
+    values: &[[u8; SINGLE_BYTES]; BRICK_VOXELS],
+    place: [usize; 3],
+) -> Corners {
+    corners(values, place, |bytes| f32::from_ne_bytes(bytes).into())
+}
+
+/// The corners of a cell of a brick of halves. Apart, so that lookups in single bricks have the registers to
+/// themselves.
+#[inline(never)]
+pub(super) fn half_corners(
+    values: &[[u8; HALF_BYTES]; BRICK_VOXELS],
+    place: [usize; 3],
+    scale: &HalfScale,
+) -> Corners {
+    corners(values, place, |bytes| scale.decode(u16::from_ne_bytes(bytes)))
+}
+
+#[inline(always)]
+fn corners<const N: usize>(
+    values: &[[u8; N]; BRICK_VOXELS],
+    [x, y, z]: [usize; 3],
+    decode: impl Fn([u8; N]) -> f64,
+) -> Corners {
+    let first = x * STRIDE_X + y * STRIDE_Y + z;
+    let v = &values[first..first + CORNER_REACH];
     [
         decode(v[0]),
         decode(v[1]),

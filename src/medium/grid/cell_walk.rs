@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use super::{
     DensityGrid,
     block_walk::{BlockWalk, LocalRay, Piece},
-    brick_atlas::BRICK_EDGE,
+    brick_atlas::{BRICK_EDGE, Brick, half_corners, single_corners},
     brick_index::{Cell, Content},
     cubic::Cubic,
     trilinear::{Corners, along},
@@ -76,37 +76,45 @@ impl DensityGrid {
                     let middle = ray.at(0.5 * (piece.span.start + piece.span.end));
                     visit(cell_piece(&corners, ray, piece.span, weight(middle, lower)))
                 }
-                Content::Brick(brick) => self.for_each_brick_cell(ray, &piece, brick, &mut visit),
+                Content::Brick(brick) => match self.atlas.brick(brick) {
+                    Brick::Single(values) => {
+                        let corners = |place| single_corners(values, place);
+                        for_each_brick_cell(ray, &piece, corners, &mut visit)
+                    }
+                    Brick::Half(values, scale) => {
+                        let corners = |place| half_corners(values, place, scale);
+                        for_each_brick_cell(ray, &piece, corners, &mut visit)
+                    }
+                },
             };
             if flow.is_break() {
                 return;
             }
         }
     }
+}
 
-    #[inline(always)]
-    fn for_each_brick_cell(
-        &self,
-        ray: &LocalRay,
-        piece: &Piece,
-        brick: usize,
-        visit: &mut impl FnMut(CellPiece) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let mut buffer = [0.0; MAX_CROSSINGS];
-        let ends = cell_ends(ray, piece, &mut buffer);
-        let mut start = piece.span.start;
-        for &end in ends {
-            // Where rounding makes an empty piece of a corner there is nothing to integrate.
-            if end <= start {
-                continue;
-            }
-            let (place, weight) = place_in_brick(ray, piece.lower, 0.5 * (start + end));
-            let corners = self.atlas.corners(brick, place);
-            visit(cell_piece(&corners, ray, Span::new(start, end), weight))?;
-            start = end;
+/// Visits the cells of a brick along a piece of a ray; `corners` are those of the cell at a place in the brick.
+#[inline(always)]
+fn for_each_brick_cell(
+    ray: &LocalRay,
+    piece: &Piece,
+    corners: impl Fn([usize; 3]) -> Corners,
+    visit: &mut impl FnMut(CellPiece) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let mut buffer = [0.0; MAX_CROSSINGS];
+    let ends = cell_ends(ray, piece, &mut buffer);
+    let mut start = piece.span.start;
+    for &end in ends {
+        // Where rounding makes an empty piece of a corner there is nothing to integrate.
+        if end <= start {
+            continue;
         }
-        ControlFlow::Continue(())
+        let (place, weight) = place_in_brick(ray, piece.lower, 0.5 * (start + end));
+        visit(cell_piece(&corners(place), ray, Span::new(start, end), weight))?;
+        start = end;
     }
+    ControlFlow::Continue(())
 }
 
 /// A line crosses at most 7 planes between the cells of a brick on each axis, and then leaves it.
