@@ -3,6 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use rayon::prelude::*;
+
 use super::{
     brick_atlas::{BrickAtlas, BrickPrecision},
     brick_index::{
@@ -14,6 +16,9 @@ use super::{
     slot::{MAX_CHILDREN, Slot},
     voxel_source::{Key, VoxelSource, lower_neighbours, upper_neighbours},
 };
+
+/// Regions whose constants are looked up at once.
+const BATCH: usize = 1 << 16;
 
 /// Builds index and atlas for the cells in the bounds.
 pub(super) fn build(
@@ -133,9 +138,10 @@ impl IndexBuilder<'_> {
         let last = self.local.last.map(|c| c >> REGION_SHIFT);
         let extent: [i64; 3] = std::array::from_fn(|axis| last[axis] - first[axis] + 1);
         let volume: i128 = extent.iter().map(|&edge| i128::from(edge)).product();
-        let own_count = planned.len() + self.source.region_tiles().len();
-        // A slot has 4 bytes where a table has 16 KiB: 64 slots a region are no burden.
-        if volume <= 4096.max(64 * own_count as i128) {
+        // A slot has 4 bytes where a table has 16 KiB: 64 slots a region with one are no burden. A tile has hardly more
+        // than a slot.
+        let burden = 64 * planned.len() + 8 * self.source.region_tiles().len();
+        if volume <= 4096.max(burden as i128) {
             self.dense_regions(planned, first, extent)
         } else {
             self.sparse_regions(planned)
@@ -152,14 +158,21 @@ impl IndexBuilder<'_> {
         let mut slots = self.budget.vector(volume)?;
         slots.resize(volume, Slot::uniform(self.source.background()));
         if !self.source.region_tiles().is_empty() || !self.source.root_tiles().is_empty() {
-            for (number, slot) in (0..).zip(&mut slots) {
-                let place = [
-                    first[0] + number / (extent[1] * extent[2]),
-                    first[1] + number / extent[2] % extent[1],
-                    first[2] + number % extent[2],
-                ];
-                let constants = self.region_constants(self.local.global(place, REGION_SHIFT));
-                *slot = self.slot(constants)?;
+            let place = |number: i64| {
+                let [x, y] = [number / (extent[1] * extent[2]), number / extent[2] % extent[1]];
+                [first[0] + x, first[1] + y, first[2] + number % extent[2]]
+            };
+            // A batch at a time: the constants of all regions would take eight times the memory of their slots.
+            for (batch, slots) in slots.chunks_mut(BATCH).enumerate() {
+                let begin = (batch * BATCH) as i64;
+                let constants: Vec<[f32; 8]> = (begin..begin + slots.len() as i64)
+                    .into_par_iter()
+                    .map(|number| self.local.global(place(number), REGION_SHIFT))
+                    .map(|region| self.region_constants(region))
+                    .collect();
+                for (slot, constants) in slots.iter_mut().zip(constants) {
+                    *slot = self.slot(constants)?;
+                }
             }
         }
         for (table, region) in planned.iter().enumerate() {
