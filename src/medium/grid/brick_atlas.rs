@@ -153,9 +153,13 @@ fn store<const N: usize>(place: &mut [u8], values: [[u8; N]; BRICK_VOXELS]) {
 
 /// The values of one brick, encoded. Walks through a brick tell its encoding once, not at every cell.
 pub(super) enum Brick<'a> {
-    Single(&'a [[u8; SINGLE_BYTES]; BRICK_VOXELS]),
-    Half(&'a [[u8; HALF_BYTES]; BRICK_VOXELS], &'a HalfScale),
+    Single(&'a SingleValues),
+    Half(&'a HalfValues, &'a HalfScale),
 }
+
+/// The bytes of a brick's values in either encoding.
+pub(super) type SingleValues = [[u8; SINGLE_BYTES]; BRICK_VOXELS];
+pub(super) type HalfValues = [[u8; HALF_BYTES]; BRICK_VOXELS];
 
 #[inline(always)]
 fn brick_values<const N: usize>(bytes: &[u8], brick: usize) -> &[[u8; N]; BRICK_VOXELS] {
@@ -164,21 +168,14 @@ fn brick_values<const N: usize>(bytes: &[u8], brick: usize) -> &[[u8; N]; BRICK_
 
 /// The corners of a cell of a brick of single values.
 #[inline(always)]
-pub(super) fn single_corners(
-    values: &[[u8; SINGLE_BYTES]; BRICK_VOXELS],
-    place: [usize; 3],
-) -> Corners {
+pub(super) fn single_corners(values: &SingleValues, place: [usize; 3]) -> Corners {
     corners(values, place, |bytes| f32::from_ne_bytes(bytes).into())
 }
 
 /// The corners of a cell of a brick of halves. Apart, so that lookups in single bricks have the registers to
 /// themselves.
 #[inline(never)]
-pub(super) fn half_corners(
-    values: &[[u8; HALF_BYTES]; BRICK_VOXELS],
-    place: [usize; 3],
-    scale: &HalfScale,
-) -> Corners {
+pub(super) fn half_corners(values: &HalfValues, place: [usize; 3], scale: &HalfScale) -> Corners {
     corners(values, place, |bytes| scale.decode(u16::from_ne_bytes(bytes)))
 }
 

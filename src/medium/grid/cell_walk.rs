@@ -8,9 +8,10 @@ use std::ops::ControlFlow;
 use super::{
     DensityGrid,
     block_walk::{BlockWalk, LocalRay, Piece},
-    brick_atlas::{BRICK_EDGE, Brick, half_corners, single_corners},
+    brick_atlas::{BRICK_EDGE, Brick, HalfValues, half_corners, single_corners},
     brick_index::{Cell, Content},
     cubic::Cubic,
+    half_scale::HalfScale,
     trilinear::{Corners, along},
 };
 use crate::math::Span;
@@ -82,8 +83,7 @@ impl DensityGrid {
                         for_each_brick_cell(ray, &piece, corners, &mut visit)
                     }
                     Brick::Half(values, scale) => {
-                        let corners = |place| half_corners(values, place, scale);
-                        for_each_brick_cell(ray, &piece, corners, &mut visit)
+                        for_each_half_cell(ray, &piece, values, scale, &mut visit)
                     }
                 },
             };
@@ -92,6 +92,18 @@ impl DensityGrid {
             }
         }
     }
+}
+
+/// [`for_each_brick_cell`] of halves. Apart, so that walks through single bricks compile as if there were no others.
+#[inline(never)]
+fn for_each_half_cell(
+    ray: &LocalRay,
+    piece: &Piece,
+    values: &HalfValues,
+    scale: &HalfScale,
+    visit: &mut impl FnMut(CellPiece) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    for_each_brick_cell(ray, piece, |place| half_corners(values, place, scale), visit)
 }
 
 /// Visits the cells of a brick along a piece of a ray; `corners` are those of the cell at a place in the brick.
