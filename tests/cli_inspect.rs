@@ -138,6 +138,9 @@ fn a_grid_of_vectors_shows_its_components() {
         }
     }
     assert_eq!(grid["usable"], false);
+    assert_eq!(grid["usable_as"], serde_json::json!(["color"]));
+    let run = work.run(&format!("inspect {path}"));
+    assert!(run.stdout.contains("can be rendered as color"), "{}", run.stdout);
 }
 
 #[test]

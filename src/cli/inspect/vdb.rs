@@ -67,6 +67,8 @@ struct Grid {
     usable: bool,
     /// Why not.
     reason: Option<String>,
+    /// Keys of a scene's medium that can name the grid.
+    usable_as: Vec<&'static str>,
 }
 
 impl Grid {
@@ -95,6 +97,7 @@ impl Grid {
             values,
             memory_bytes: summary.memory_bytes,
             usable: reason.is_none(),
+            usable_as: uses(summary, reason.is_none()),
             reason,
         }
     }
@@ -125,9 +128,10 @@ impl Grid {
             let [min, max] = [min, max].map(|corner| corner.map(short).join(" "));
             lines.push(format!("world bounds {min} to {max}"));
         }
-        lines.push(match &self.reason {
-            Some(reason) => format!("cannot be rendered: {reason}"),
-            None => "can be rendered".to_string(),
+        lines.push(match (&self.reason, &self.usable_as[..]) {
+            (None, uses) => format!("can be rendered: {}", uses.join(", ")),
+            (Some(_), ["color"]) => "can be rendered as color".into(),
+            (Some(reason), _) => format!("cannot be rendered: {reason}"),
         });
         lines.join("\n  ") + "\n"
     }
@@ -159,6 +163,18 @@ impl fmt::Display for Figure {
             Self::Number(value) => f.write_str(&short(*value)),
             Self::Vector(values) => write!(f, "({})", values.map(short).join(", ")),
         }
+    }
+}
+
+/// What a scene can use a grid for.
+fn uses(summary: &GridSummary, is_density: bool) -> Vec<&'static str> {
+    let is_vector = matches!(summary.value_type.as_str(), "vec3s" | "vec3d");
+    if is_density {
+        vec!["density", "temperature", "flame"]
+    } else if is_vector && summary.unusable.is_none() {
+        vec!["color"]
+    } else {
+        Vec::new()
     }
 }
 
