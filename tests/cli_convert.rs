@@ -58,6 +58,11 @@ fn half_is_smaller_and_says_so() {
     let size = |name: &str| fs::metadata(work.path(name)).unwrap().len();
     assert!(size("half.vdb") < size("full.vdb") * 9 / 10);
     assert!(grids(&work, "half.vdb")[0].half && !grids(&work, "full.vdb")[0].half);
+    // What is half stays half.
+    work.run("convert half.vdb -o again.vdb --compression zip");
+    assert!(grids(&work, "again.vdb")[0].half);
+    work.run("convert again.vdb -o same.vdb");
+    assert_eq!(fs::read(work.path("same.vdb")).unwrap(), fs::read(work.path("half.vdb")).unwrap());
 }
 
 #[test]

@@ -222,7 +222,7 @@ pub struct ConvertArguments {
     #[arg(long, value_name = "NAME")]
     pub rename: Option<String>,
 
-    /// Round values to 16 bits
+    /// Round values to 16 bits; grids that were saved so stay so
     #[arg(long)]
     pub half: bool,
 

@@ -132,6 +132,8 @@ where
     }
     let grid = GridToWrite {
         class: GridClass::from_word(&summary.class),
+        // What was rounded once need not be kept in more bits than it has.
+        half: summary.half || summary.value_type == "half",
         metadata: summary.metadata.clone(),
         ..GridToWrite::new(name, &grid)
     };

@@ -119,7 +119,7 @@ pub trait GridValue: Copy + Default + Send + Sync + sealed::Sealed + 'static {
     /// With the sign changed.
     #[doc(hidden)]
     fn negative(self) -> Self;
-    /// Equality in which NaN equals NaN.
+    /// Equality in which NaN equals NaN, and -0 is not 0.
     #[doc(hidden)]
     fn is_same(self, other: Self) -> bool;
 }
@@ -161,7 +161,7 @@ macro_rules! real_value {
                 -self
             }
             fn is_same(self, other: Self) -> bool {
-                self == other || (self.is_nan() && other.is_nan())
+                self.to_bits() == other.to_bits() || (self.is_nan() && other.is_nan())
             }
         }
     };
@@ -182,7 +182,7 @@ impl GridValue for f16 {
         -self
     }
     fn is_same(self, other: Self) -> bool {
-        self == other || (self.is_nan() && other.is_nan())
+        self.to_bits() == other.to_bits() || (self.is_nan() && other.is_nan())
     }
 }
 
@@ -254,5 +254,12 @@ mod tests {
             assert_eq!(value.is_nan(), expected.is_nan(), "{bits:#x}");
             assert!(value.is_nan() || value.to_bits() == expected.to_bits(), "{bits:#x}");
         }
+    }
+
+    #[test]
+    fn sameness_is_of_bits_but_for_nan() {
+        assert!(!0_f32.is_same(-0.0) && !0_f64.is_same(-0.0) && !f16::ZERO.is_same(f16::NEG_ZERO));
+        assert!(f32::NAN.is_same(-f32::NAN) && [1.0, f64::NAN, 0.0].is_same([1.0, f64::NAN, 0.0]));
+        assert!(![1.0_f32, 2.0, 0.0].is_same([1.0, 2.0, -0.0]));
     }
 }

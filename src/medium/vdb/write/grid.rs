@@ -21,6 +21,9 @@ pub struct GridToWrite<'a> {
     pub class: GridClass,
     /// The grid.
     pub values: ValuesToWrite<'a>,
+    /// Whether this grid is saved as half even where [`WriteOptions`](super::WriteOptions) leave others whole: right for
+    /// values that were halves before.
+    pub half: bool,
     /// Further values by name, such as `vector_type` or `creator`. The names `name`, `class`,
     /// `is_saved_as_half_float` and those that begin with `file_` are the writer's own.
     pub metadata: BTreeMap<String, MetadataValue>,
@@ -29,7 +32,13 @@ pub struct GridToWrite<'a> {
 impl<'a> GridToWrite<'a> {
     /// A grid of unknown class without further metadata.
     pub fn new(name: &'a str, values: impl Into<ValuesToWrite<'a>>) -> Self {
-        Self { name, class: GridClass::Unknown, values: values.into(), metadata: BTreeMap::new() }
+        Self {
+            name,
+            class: GridClass::Unknown,
+            values: values.into(),
+            half: false,
+            metadata: BTreeMap::new(),
+        }
     }
 }
 

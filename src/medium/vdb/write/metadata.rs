@@ -24,7 +24,7 @@ pub(super) fn metadata_bytes(
     if let Some(class) = grid.class.word() {
         values.insert("class".into(), MetadataValue::text(class));
     }
-    if options.half {
+    if options.half || grid.half {
         values.insert("is_saved_as_half_float".into(), MetadataValue::flag(true));
     }
     let own = values.iter();

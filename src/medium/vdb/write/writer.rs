@@ -168,7 +168,7 @@ impl<W: Write + Seek> VdbWriter<W> {
         head.extend(metadata_bytes(grid, &statistics, &self.options).map_err(refused)?);
         head.extend(transform_bytes(&values.index_to_world).map_err(refused)?);
 
-        let layout = Layout::new(V::TYPE, self.options.half, compression);
+        let layout = Layout::new(V::TYPE, self.options.half || grid.half, compression);
         let background =
             if layout.is_half { values.background.rounded() } else { values.background };
         let output = &mut self.output;
