@@ -77,7 +77,7 @@ fn a_fixed_radius_counts_without_bias() {
                 method,
                 seed: 1,
             };
-            let measured = experiment.run().unwrap().unwrap();
+            let measured = experiment.run().unwrap().unwrap().moments;
             for (moments, k) in measured.iter().zip(ks) {
                 let exact = if n % 2 == k % 2 { 0.0 } else { 0.5 / (k * k) as f64 };
                 let error = (exact / 20_000.0).sqrt();
@@ -99,7 +99,11 @@ fn jittered_grids_agree_with_the_law_of_their_surface() {
         let experiment = |method, trials| {
             let model = Model::Jittered(dimension);
             let n = model.nearest_count(model.photons_needed(100));
-            Experiment { model, n, ks: &ks, trials, method, seed: 5 }.run().unwrap().unwrap()
+            Experiment { model, n, ks: &ks, trials, method, seed: 5 }
+                .run()
+                .unwrap()
+                .unwrap()
+                .moments
         };
         let (fast, direct) = (experiment(Method::Fast, 60_000), experiment(Method::Direct, 8_000));
         for (index, &k) in ks.iter().enumerate() {

@@ -208,6 +208,9 @@ fn tables_hold_a_row_for_every_model_constant_and_k() {
     };
     let table = request.tabulate(|_| ()).unwrap();
     assert_eq!(table.rows.len(), 14 * 4 * 3 + 3);
+    let json = serde_json::to_value(&table).unwrap();
+    let second = json["rows"].as_array().unwrap().iter().find(|row| row["k"] == 2).unwrap();
+    assert_eq!((&second["exact_bias"], &second["exact_variance"]), (&1.0.into(), &"inf".into()));
     let csv = table.to_csv();
     let row = csv.lines().find(|line| line.starts_with("3d-basic,k-1/2,1000,10,")).unwrap();
     assert!(row.contains(",9.2489874934986") && row.contains(",9.5000000000000000e0,"), "{row}");

@@ -1,12 +1,10 @@
 //! Bias tables: exact and measured mean and variance of every model, constant and k asked for.
 
-use std::time::Instant;
-
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::constant::Constant;
 use super::error::LabError;
-use super::experiment::{Experiment, Method, Moments};
+use super::experiment::{Experiment, Measured, Method, Moments};
 use super::model::{Law, Model, law};
 
 /// What to tabulate.
@@ -42,10 +40,13 @@ pub struct BiasRow {
     /// The numerator c.
     pub c: Option<f64>,
     /// Exact mean; the truth is 1.
+    #[serde(serialize_with = "number_or_word")]
     pub exact_mean: Option<f64>,
     /// Exact mean - 1, to full relative accuracy.
+    #[serde(serialize_with = "number_or_word")]
     pub exact_bias: Option<f64>,
     /// Exact variance.
+    #[serde(serialize_with = "number_or_word")]
     pub exact_variance: Option<f64>,
     /// Repetitions.
     pub trials: u64,
@@ -61,6 +62,17 @@ pub struct BiasRow {
     pub z: Option<f64>,
     /// Standard error of the measured variance.
     pub variance_std_error: Option<f64>,
+    /// 1 / (mean squared error of a trial x seconds a trial): how much is learnt a second. It depends on the machine, and
+    /// is not in the CSV.
+    pub efficiency: Option<f64>,
+}
+
+/// JSON has no infinite numbers: a word stands for them, as in the CSV.
+fn number_or_word<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    match value {
+        Some(infinite) if infinite.is_infinite() => serializer.collect_str(infinite),
+        value => value.serialize(serializer),
+    }
 }
 
 /// What an experiment cost and was worth.
@@ -72,7 +84,7 @@ pub struct ExperimentCost {
     pub n: u64,
     /// Repetitions, each giving every k at once.
     pub trials: u64,
-    /// Processor time of the experiment, summed over threads \[s\].
+    /// Time the threads worked on it, summed \[s\].
     pub seconds: f64,
 }
 
@@ -108,8 +120,10 @@ impl BiasRequest {
             let constants = if is_fixed { &[Constant::K][..] } else { &self.constants };
             for &constant in constants {
                 for (index, (&k, law)) in ks.iter().zip(&laws).enumerate() {
-                    let moments = measured.as_ref().map(|measured| &measured[index]);
-                    table.rows.push(BiasRow::new(model, constant, n, k, law.as_ref(), moments));
+                    let moments = measured.as_ref().map(|measured| &measured.moments[index]);
+                    let mut row = BiasRow::new(model, constant, n, k, law.as_ref(), moments);
+                    row.efficiency = measured.as_ref().and_then(|all| row.efficiency(all.seconds));
+                    table.rows.push(row);
                 }
             }
         }
@@ -128,18 +142,20 @@ impl BiasRequest {
         n: u64,
         ks: &[u64],
         costs: &mut Vec<ExperimentCost>,
-    ) -> Result<Option<Vec<Moments>>, LabError> {
+    ) -> Result<Option<Measured>, LabError> {
         if self.trials == 0 {
             return Ok(None);
         }
         let (trials, method, seed) = (self.trials, self.method, self.seed);
         let experiment = Experiment { model, n, ks, trials, method, seed };
-        let started = Instant::now();
         let measured = experiment.run()?;
-        if measured.is_some() {
-            let seconds = started.elapsed().as_secs_f64();
-            costs.push(ExperimentCost { model: model.name(), n, trials, seconds });
-        }
+        let cost = |measured: &Measured| ExperimentCost {
+            model: model.name(),
+            n,
+            trials,
+            seconds: measured.seconds,
+        };
+        costs.extend(measured.as_ref().map(cost));
         Ok(measured)
     }
 }
@@ -194,6 +210,14 @@ impl BiasRow {
             measured_variance: measured(Moments::variance),
             z,
             variance_std_error: measured(Moments::variance_std_error),
+            efficiency: None,
         }
+    }
+
+    /// The efficiency of an experiment that took so long \[s\].
+    fn efficiency(&self, seconds: f64) -> Option<f64> {
+        let squared_error = self.measured_variance? + self.measured_bias?.powi(2);
+        let efficiency = self.trials as f64 / (squared_error * seconds);
+        efficiency.is_finite().then_some(efficiency)
     }
 }

@@ -20,6 +20,6 @@ mod plot;
 pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
 pub use constant::Constant;
 pub use error::LabError;
-pub use experiment::{Experiment, Method, Moments};
+pub use experiment::{Experiment, Measured, Method, Moments};
 pub use model::{Law, Model, ShellLaw, law};
 pub use plot::{Chart, Scale, Series};

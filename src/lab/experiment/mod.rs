@@ -13,6 +13,8 @@ mod shells;
 
 pub use moments::Moments;
 
+use std::time::Instant;
+
 use rayon::prelude::*;
 
 use super::error::LabError;
@@ -50,22 +52,44 @@ pub struct Experiment<'a> {
     pub seed: u64,
 }
 
+/// What came of an experiment.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Deviations of k / u_(k) from 1, for each k.
+    pub moments: Vec<Moments>,
+    /// Time the threads worked, summed \[s\].
+    pub seconds: f64,
+}
+
+impl Measured {
+    fn merge(self, other: Self) -> Self {
+        let pairs = self.moments.into_iter().zip(other.moments);
+        Self {
+            moments: pairs.map(|(sum, batch)| sum.merge(batch)).collect(),
+            seconds: self.seconds + other.seconds,
+        }
+    }
+}
+
 impl Experiment<'_> {
-    /// Deviations of k / u_(k) from 1, for each k; none of models without chance.
+    /// Simulates; nothing comes of models without chance.
     ///
     /// # Errors
     /// The model has no k-th of n photons for one of the k.
-    pub fn run(&self) -> Result<Option<Vec<Moments>>, LabError> {
+    pub fn run(&self) -> Result<Option<Measured>, LabError> {
         self.ks.iter().try_for_each(|&k| self.model.check(self.n, k))?;
         if self.ks.is_empty() || self.model == Model::FirstApproximation {
             return Ok(None);
         }
-        let batches: Vec<Vec<Moments>> =
-            (0..BATCH_COUNT).into_par_iter().map(|batch| self.run_batch(batch)).collect();
-        let merge = |sum: Vec<Moments>, batch: Vec<Moments>| {
-            sum.into_iter().zip(batch).map(|(sum, batch)| sum.merge(batch)).collect()
-        };
-        Ok(batches.into_iter().reduce(merge))
+        let batches: Vec<Measured> = (0..BATCH_COUNT)
+            .into_par_iter()
+            .map(|batch| {
+                let started = Instant::now();
+                let moments = self.run_batch(batch);
+                Measured { moments, seconds: started.elapsed().as_secs_f64() }
+            })
+            .collect();
+        Ok(batches.into_iter().reduce(Measured::merge))
     }
 
     fn run_batch(&self, batch: u64) -> Vec<Moments> {
