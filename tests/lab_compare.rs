@@ -58,6 +58,50 @@ fn biases_are_those_of_the_laws() {
     }
 }
 
+/// Collisions of a photon between two distances, 4 pi int t^2 p dt by Simpson's rule, against transport theory.
+#[test]
+fn power_densities_add_up_to_known_collisions() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/truth/infinite.json");
+    let truth: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    for (scene, albedo) in
+        [(AnalyticScene::PointAbsorbing, "0"), (AnalyticScene::PointScattering, "0.9")]
+    {
+        for (from, to) in [("0.5", "1"), ("1", "2")] {
+            let within = |radius: &str| truth["enclosed"][albedo][radius].as_f64().unwrap();
+            let (low, high): (f64, f64) = (from.parse().unwrap(), to.parse().unwrap());
+            let steps = 1000;
+            let width = (high - low) / f64::from(steps);
+            let terms = (0..=steps).map(|i| {
+                let t = low + f64::from(i) * width;
+                let weight = if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+                weight * t * t * scene.power_density(t)
+            });
+            let sum = 4.0 * std::f64::consts::PI * width / 3.0 * terms.sum::<f64>();
+            let exact = within(to) - within(from);
+            assert!((sum / exact - 1.0).abs() < 1e-10, "{scene:?} {from}..{to}: {sum} {exact}");
+        }
+    }
+}
+
+/// Scattered photons are as good as independent: stratification is worth less, and the variance of counts tells how much.
+#[test]
+fn scattering_undoes_strata_as_counts_foretell() {
+    let scattering = CompareRequest {
+        scene: AnalyticScene::PointScattering,
+        ks: vec![10, 20],
+        ..request(50_000, 32, 500)
+    };
+    let table = tabulate(&scattering, 2);
+    for row in &table.rows {
+        let difference = (row.intrinsic_bias - row.count_law_bias).abs();
+        assert!(difference < LIMIT * row.std_error + 0.05 * row.count_law_bias, "{row:?}");
+        if row.emission == "stratified" {
+            assert!(row.variance_ratio.is_some_and(|ratio| ratio < 2.0), "{row:?}");
+        }
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let request = CompareRequest {

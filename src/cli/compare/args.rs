@@ -11,6 +11,7 @@ use crate::cli::count::parse_count;
 const EXAMPLES: &str = "\
 Scenes:
   analytic:point-absorbing   a point light of 1 W in an infinite medium, sigma_t = 1, that absorbs; queries 1 m from it
+  analytic:point-scattering  the same with an albedo of 0.9, isotropic
 
 Every run emits and traces n photons as a render does and asks their map at random places. Errors are told apart:
   intrinsic   k / u - 1, u the photons that the ball out to the k-th is expected to hold
@@ -72,8 +73,8 @@ pub struct CompareArguments {
     pub threads: Option<u32>,
 }
 
-/// A map is traced as a whole: 44 bytes a photon.
-const MOST_PHOTONS: u64 = 100_000_000;
+/// All collisions of a map are held at once, 44 bytes each, ten a photon where most light is scattered.
+const MOST_PHOTONS: u64 = 20_000_000;
 
 fn parse_photons(text: &str) -> Result<u64, String> {
     let count = parse_count(text)?;

@@ -7,7 +7,9 @@
 //! the last factor being the share of the sphere of radius t that lies in the ball.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
+use super::scattering::ScatteredFluence;
 use crate::light::{Light, PointLight};
 use crate::math::{DVec3, Rgb};
 use crate::medium::{Bounds, Medium, MediumExtinction, Phase, UniformExtinction};
@@ -17,7 +19,14 @@ use crate::medium::{Bounds, Medium, MediumExtinction, Phase, UniformExtinction};
 pub enum AnalyticScene {
     /// Nothing scatters: p = exp(-t) / (4 pi t^2).
     PointAbsorbing,
+    /// Albedo 0.9, isotropic: p is the fluence.
+    PointScattering,
 }
+
+/// Albedo of the medium that scatters.
+const ALBEDO: f64 = 0.9;
+
+static SCATTERED: LazyLock<ScatteredFluence> = LazyLock::new(|| ScatteredFluence::new(ALBEDO));
 
 /// Nodes above 0 and weights of Gauss and Legendre's rule of 12 points on \[-1, 1\].
 const GAUSS_LEGENDRE: [(f64, f64); 6] = [
@@ -31,12 +40,13 @@ const GAUSS_LEGENDRE: [(f64, f64); 6] = [
 
 impl AnalyticScene {
     /// Every scene.
-    pub const ALL: [Self; 1] = [Self::PointAbsorbing];
+    pub const ALL: [Self; 2] = [Self::PointAbsorbing, Self::PointScattering];
 
     /// As on the command line, after `analytic:`.
     pub fn name(self) -> &'static str {
         match self {
             Self::PointAbsorbing => "point-absorbing",
+            Self::PointScattering => "point-scattering",
         }
     }
 
@@ -54,6 +64,7 @@ impl AnalyticScene {
     pub(super) fn medium(self) -> Medium {
         let albedo = match self {
             Self::PointAbsorbing => Rgb::ZERO,
+            Self::PointScattering => Rgb::splat(ALBEDO),
         };
         Medium {
             bounds: Bounds::Infinite,
@@ -75,6 +86,7 @@ impl AnalyticScene {
     pub fn power_density(self, distance: f64) -> f64 {
         match self {
             Self::PointAbsorbing => (-distance).exp() / (4.0 * PI * distance * distance),
+            Self::PointScattering => SCATTERED.at(distance),
         }
     }
 

@@ -19,6 +19,7 @@ mod photon_maps;
 mod query_errors;
 mod request;
 mod row;
+mod scattering;
 
 pub use analytic::AnalyticScene;
 pub use request::{CompareRequest, CompareTable, EmissionCost};

@@ -17,7 +17,7 @@ use crate::trace::{MapFrame, Photon, TraceSettings, trace_photons};
 /// How far powers of photons may differ from each other: rounding to single precision.
 const EQUAL_POWER: f32 = 1e-6;
 
-/// Scatterings followed: beyond, 0.9 of the power survive each with a probability of 10^-45.
+/// Scatterings followed: with an albedo of 0.9 the chance of one more is 10^-45.
 const MAX_ORDER: u32 = 1000;
 
 /// What photon maps are made of.
