@@ -10,6 +10,7 @@ use photonvdb::scene::Overrides;
 
 use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
+use super::compare::args::CompareArguments;
 use super::count::{parse_count, parse_resolution};
 
 const EXAMPLES: &str = "\
@@ -20,6 +21,8 @@ Examples:
       Sixteen independent passes of ten million photons, averaged.
   photonvdb bias 3d-random 3d-jittered --k 10,50,100
       How far k-nearest estimates are off, exact and measured.
+  photonvdb compare analytic:point-absorbing --k 10,50,100
+      What stratified emission gains over random emission.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
@@ -75,6 +78,8 @@ pub enum Command {
     Render(Box<RenderArguments>),
     /// Measure the bias of density estimates on models whose truth is known
     Bias(Box<BiasArguments>),
+    /// Measure random against stratified emission where the power density is known
+    Compare(Box<CompareArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),
     /// Write grids of a .vdb to another: some of them, cropped, smaller

@@ -38,6 +38,8 @@ pub enum CliError {
         "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
     )]
     UnknownModel { name: String, nearest: &'static str },
+    #[error("there is nothing to compare in {name:?}; known are {known}")]
+    UnknownComparison { name: String, known: String },
     #[error("cannot make the directory {path}: {source}", path = path.display())]
     Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]

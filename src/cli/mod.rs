@@ -7,6 +7,7 @@
 mod args;
 mod bias;
 mod bytes;
+mod compare;
 mod convert;
 mod count;
 mod error;
@@ -18,6 +19,7 @@ mod report;
 mod resources;
 mod settings;
 mod summary;
+mod text_file;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -36,6 +38,7 @@ pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
     };

@@ -25,6 +25,27 @@ pub enum LabError {
         /// Photons there must be.
         needed: u64,
     },
+    /// The ball that holds so many photons would reach the light.
+    #[error(
+        "balls that hold k = {k} of n = {n} photons would reach the light; raise --n or lower --k"
+    )]
+    BallTooLarge {
+        /// The k asked for.
+        k: u64,
+        /// Photons emitted.
+        n: u64,
+    },
+    /// Photons are not equally strong.
+    #[error(
+        "a photon carries {share} of the power that each should: counting photons does not measure power here"
+    )]
+    UnequalPowers {
+        /// Its power over the expected one.
+        share: f64,
+    },
+    /// A photon map cannot be built.
+    #[error("{0}")]
+    Map(String),
     /// A chart cannot be drawn.
     #[error("the chart {title:?} cannot be drawn: {reason}")]
     Plot {

@@ -3,11 +3,14 @@
 //! ```text
 //! model ──law──▶ exact mean and variance ─┐
 //! model ──experiment──▶ moments ──────────┴─bias──▶ table ──▶ CSV, JSON, SVG
+//!
+//! analytic scene ──emission, trace, map──▶ errors of queries ──compare──▶ table ──▶ CSV, JSON, SVG
 //! ```
 //! The models are those of K. Hartmann, "Theoretical study of photon mapping with stratification" (LMU 2020), made exact,
 //! and jittered grids, which are what stratified emission is.
 
 mod bias;
+mod compare;
 mod constant;
 mod csv;
 mod error;
@@ -18,6 +21,7 @@ mod model;
 mod plot;
 
 pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
+pub use compare::{AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost};
 pub use constant::Constant;
 pub use error::LabError;
 pub use experiment::{Experiment, Measured, Method, Moments};

@@ -6,8 +6,8 @@ use std::path::Path;
 use photonvdb::lab::figures::{Studies, figures, plotted_csv, plotted_numbers, report};
 use serde_json::json;
 
-use super::{write_json, write_text};
 use crate::cli::error::CliError;
+use crate::cli::text_file::{write_json, write_text};
 
 /// Draws all figures, and beside them their numbers and the report.
 pub fn draw(directory: &Path, seed: u64) -> Result<(), CliError> {

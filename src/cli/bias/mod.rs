@@ -3,21 +3,17 @@
 pub mod args;
 mod chart;
 mod figures;
-mod k_list;
+pub mod k_list;
 mod summary;
 
-use std::fs;
-use std::io::Write;
-use std::path::Path;
-
-use photonvdb::film::{check_writable, write_beside};
+use photonvdb::film::check_writable;
 use photonvdb::lab::{BiasRequest, Constant, Method, Model};
-use serde::Serialize;
 use strsim::damerau_levenshtein;
 
 use super::error::CliError;
 use super::report::is_stdout;
-use super::{print_json, print_to_stdout, thread_pool};
+use super::text_file::{write_json, write_text};
+use super::{print_to_stdout, thread_pool};
 use args::BiasArguments;
 
 /// Tabulates what the arguments ask for.
@@ -85,23 +81,4 @@ fn unknown_model(name: &str) -> CliError {
         .min_by_key(|known| damerau_levenshtein(known, name))
         .unwrap_or_default();
     CliError::UnknownModel { name: name.to_owned(), nearest }
-}
-
-/// Writes text to a file, or to stdout where the path is `-`.
-fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
-    if is_stdout(path) {
-        return print_to_stdout(text);
-    }
-    Ok(write_beside(path, |file: &mut fs::File| file.write_all(text.as_bytes()))?)
-}
-
-fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    if is_stdout(path) {
-        return print_json(value);
-    }
-    let write = |file: &mut fs::File| {
-        serde_json::to_writer_pretty(&mut *file, value)?;
-        writeln!(file)
-    };
-    Ok(write_beside(path, write)?)
 }

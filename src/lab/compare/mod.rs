@@ -1,0 +1,26 @@
+//! Random against stratified emission where the power density is known: the renderer's own photons, map and search.
+//!
+//! ```text
+//! analytic scene ──emission, tracing──▶ photon maps ──k nearest──▶ errors a query ──over maps──▶ rows
+//! ```
+//! Photons are emitted and traced as for a render, in as many independent maps as runs. At every query the ball out to
+//! the k-th nearest photon has radius R and is expected to hold u photons. Three errors are told apart:
+//!
+//! - intrinsic, k / u - 1: what is wrong even where the power density is the same all over the ball;
+//! - smoothing, its mean over the ball / its value at the query - 1;
+//! - total, k / (n V(R) p) - 1: what a render sees.
+//!
+//! Queries of one map share its photons, so that standard errors come from the means of maps.
+
+mod analytic;
+mod csv;
+mod law;
+mod photon_maps;
+mod query_errors;
+mod request;
+mod row;
+mod scattering;
+
+pub use analytic::AnalyticScene;
+pub use request::{CompareRequest, CompareTable, EmissionCost};
+pub use row::CompareRow;
