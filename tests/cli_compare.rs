@@ -36,6 +36,7 @@ fn what_cannot_be_compared_is_named() {
         run.fails_with("analytic:point-absorbing");
         assert!(run.stderr.contains(scene), "{}", run.stderr);
     }
+    work.run(&format!("{SMALL} --k 1,5")).fails_with("take k from 2 on");
     work.run(&format!("{SMALL} --k 5000")).fails_with("raise --n or lower --k");
     assert_eq!(work.run(&format!("{SMALL} --k 0")).code, Some(2));
     assert_eq!(work.run(&format!("{SMALL} --n 1e9")).code, Some(2));

@@ -90,7 +90,7 @@ fn scattering_undoes_strata_as_counts_foretell() {
     let scattering = CompareRequest {
         scene: AnalyticScene::PointScattering,
         ks: vec![10, 20],
-        ..request(50_000, 32, 500)
+        ..request(20_000, 32, 300)
     };
     let table = tabulate(&scattering, 2);
     for row in &table.rows {
@@ -120,4 +120,7 @@ fn balls_that_would_reach_the_light_are_refused() {
     let few = CompareRequest { ks: vec![100], ..request(500, 2, 10) };
     let refused = few.tabulate(|| None, || ()).map(|table| table.rows.len());
     assert_eq!(refused, Err(LabError::BallTooLarge { k: 100, n: 500 }));
+    let one = CompareRequest { ks: vec![1], ..request(500, 2, 10) };
+    let refused = one.tabulate(|| None, || ()).map(|table| table.rows.len());
+    assert_eq!(refused, Err(LabError::InfiniteMean { k: 1 }));
 }

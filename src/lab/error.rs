@@ -25,6 +25,12 @@ pub enum LabError {
         /// Photons there must be.
         needed: u64,
     },
+    /// 1 / u has no mean.
+    #[error("k = {k}: the mean of its estimate is infinite among random photons; take k from 2 on")]
+    InfiniteMean {
+        /// The k asked for.
+        k: u64,
+    },
     /// The ball that holds so many photons would reach the light.
     #[error(
         "balls that hold k = {k} of n = {n} photons would reach the light; raise --n or lower --k"

@@ -4,6 +4,7 @@ pub mod args;
 mod chart;
 mod summary;
 
+use indicatif::ProgressBar;
 use photonvdb::emission::EmissionKind;
 use photonvdb::film::check_writable;
 use photonvdb::lab::{AnalyticScene, CompareRequest};
@@ -25,7 +26,10 @@ pub fn run(arguments: &CompareArguments) -> Result<(), CliError> {
     let files = outputs.into_iter().flatten().filter(|path| !is_stdout(path));
     files.into_iter().try_for_each(|path| check_writable(path))?;
 
-    let table = pool.install(|| request.tabulate(cpu_seconds, || ()))?;
+    // Draws nothing where stderr is no terminal.
+    let bar = ProgressBar::new(request.emissions.len() as u64 * request.runs);
+    let table = pool.install(|| request.tabulate(cpu_seconds, || bar.inc(1)))?;
+    bar.finish_and_clear();
     if let Some(path) = &arguments.csv {
         write_text(path, &table.to_csv())?;
     }
@@ -40,14 +44,12 @@ pub fn run(arguments: &CompareArguments) -> Result<(), CliError> {
 }
 
 fn request(arguments: &CompareArguments) -> Result<CompareRequest, CliError> {
-    let mut emissions: Vec<EmissionKind> =
-        arguments.emission.iter().filter_map(|name| emission(name)).collect();
-    let all = emissions.clone();
-    let mut index = 0;
-    emissions.retain(|kind| {
-        index += 1;
-        !all[..index - 1].contains(kind)
-    });
+    let mut emissions: Vec<EmissionKind> = Vec::new();
+    for kind in arguments.emission.iter().filter_map(|name| emission(name)) {
+        if !emissions.contains(&kind) {
+            emissions.push(kind);
+        }
+    }
     Ok(CompareRequest {
         scene: scene(&arguments.scene)?,
         emissions,

@@ -24,7 +24,7 @@ pub struct CompareRequest {
     pub scene: AnalyticScene,
     /// Ways of emission; ratios are to the random one, if it is among them.
     pub emissions: Vec<EmissionKind>,
-    /// Photons of the estimate.
+    /// Photons of the estimate: 2 or more; from 3 on the variance of random emission is finite.
     pub ks: Vec<u64>,
     /// Photons emitted a map.
     pub n: u64,
@@ -59,7 +59,7 @@ impl CompareRequest {
     /// map that is done.
     ///
     /// # Errors
-    /// There are too few photons for a k, a k is out of range, or a map cannot be built.
+    /// A k is below 2, there are too few photons for one, or a map cannot be built.
     pub fn tabulate(
         &self,
         processor_seconds: impl Fn() -> Option<f64>,
@@ -97,7 +97,10 @@ impl CompareRequest {
     /// How far queries look \[m\], where balls stay clear of the light.
     fn reach(&self, ks: &[u64]) -> Result<f64, LabError> {
         let largest = ks.last().copied().unwrap_or(1);
-        if ks.first() == Some(&0) || largest > self.n {
+        if let Some(&k) = ks.first().filter(|&&k| k < 2) {
+            return Err(LabError::InfiniteMean { k });
+        }
+        if largest > self.n {
             return Err(LabError::BallTooLarge { k: largest, n: self.n });
         }
         let sought = COUNT_STEP * photons_sought(largest) as f64;

@@ -36,7 +36,8 @@ pub struct CompareRow {
     pub intrinsic_bias_k_minus_half: f64,
     /// With k - 1.
     pub intrinsic_bias_k_minus_1: f64,
-    /// What theory says: 1 / (k - 1) of random emission, otherwise the law of one photon a cubic cell.
+    /// What theory says of photons that collide once: 1 / (k - 1) of random emission, otherwise the law of one photon a
+    /// cubic cell.
     pub law_bias: f64,
     /// (measured - law) / standard error.
     pub law_z: f64,
