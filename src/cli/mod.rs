@@ -19,6 +19,7 @@ mod report;
 mod resources;
 mod settings;
 mod summary;
+mod table_outputs;
 mod text_file;
 
 use std::io::{self, Write};

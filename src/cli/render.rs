@@ -13,10 +13,11 @@ use super::args::RenderArguments;
 use super::error::CliError;
 use super::interrupt;
 use super::progress::Progress;
-use super::report::{Comparison, Report, Seconds, is_stdout, write_report};
+use super::report::{Comparison, Report, Seconds, is_stdout};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
+use super::text_file::write_json;
 use super::thread_pool;
 
 /// Renders what the arguments ask for.
@@ -71,7 +72,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     }
     report.seconds.total = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {
-        write_report(path, &report)?;
+        write_json(path, &report)?;
     }
     summary.times(&report.seconds, &report.photons);
     summary.truncated(&report.power, scene.photons.max_order);

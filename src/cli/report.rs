@@ -1,16 +1,12 @@
 //! The machine-readable report of a render.
 
-use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use photonvdb::film::{ImageError, write_beside};
+use photonvdb::film::ImageError;
 use photonvdb::render::RenderReport;
 use photonvdb::scene::Plan;
 use serde::Serialize;
 
-use super::error::CliError;
-use super::print_json;
 use super::settings::Settings;
 
 /// What `--report` writes. Figures that are unknown are `null`.
@@ -103,18 +99,6 @@ impl From<&RenderReport> for Power {
             resampled: power.resampled.to_array(),
         }
     }
-}
-
-/// Writes the report to `path`, or to stdout where `path` is `-`.
-pub fn write_report(path: &Path, report: &Report) -> Result<(), CliError> {
-    if is_stdout(path) {
-        return print_json(report);
-    }
-    let write = |file: &mut File| {
-        serde_json::to_writer_pretty(&mut *file, report)?;
-        writeln!(file)
-    };
-    Ok(write_beside(path, write)?)
 }
 
 /// Whether a path stands for stdout.

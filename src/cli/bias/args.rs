@@ -7,6 +7,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::k_list::{KList, parse_k_list};
 use crate::cli::count::parse_count;
+use crate::cli::table_outputs::TableOutputs;
 
 const EXAMPLES: &str = "\
 Models:
@@ -66,17 +67,9 @@ pub struct BiasArguments {
     #[arg(long)]
     pub exact_only: bool,
 
-    /// Every row as CSV; `-` is stdout
-    #[arg(long, value_name = "OUT.csv")]
-    pub csv: Option<PathBuf>,
-
-    /// Every row and the cost of every experiment as JSON; `-` is stdout
-    #[arg(long, value_name = "OUT.json")]
-    pub json: Option<PathBuf>,
-
-    /// Bias by k as a chart
-    #[arg(long, value_name = "OUT.svg")]
-    pub plot: Option<PathBuf>,
+    /// Files of the table
+    #[command(flatten)]
+    pub outputs: TableOutputs,
 
     /// Draws every graph of the thesis into a directory, with their numbers and a report
     #[arg(long, value_name = "DIR")]

@@ -6,14 +6,11 @@ mod figures;
 pub mod k_list;
 mod summary;
 
-use photonvdb::film::check_writable;
 use photonvdb::lab::{BiasRequest, Constant, Method, Model};
 use strsim::damerau_levenshtein;
 
 use super::error::CliError;
-use super::report::is_stdout;
-use super::text_file::{write_json, write_text};
-use super::{print_to_stdout, thread_pool};
+use super::thread_pool;
 use args::BiasArguments;
 
 /// Tabulates what the arguments ask for.
@@ -25,23 +22,12 @@ pub fn run(arguments: &BiasArguments) -> Result<(), CliError> {
     if arguments.models.is_empty() {
         return Ok(());
     }
-    let outputs = [&arguments.csv, &arguments.json, &arguments.plot];
-    let files = outputs.into_iter().flatten().filter(|path| !is_stdout(path));
-    files.into_iter().try_for_each(|path| check_writable(path))?;
+    arguments.outputs.check()?;
 
     let request = request(arguments)?;
     let table = pool.install(|| request.tabulate(|_| ()))?;
-    if let Some(path) = &arguments.csv {
-        write_text(path, &table.to_csv())?;
-    }
-    if let Some(path) = &arguments.json {
-        write_json(path, &table)?;
-    }
-    if let Some(path) = &arguments.plot {
-        write_text(path, &chart::bias_chart(&table).to_svg()?)?;
-    }
-    let is_stdout_taken = outputs.into_iter().flatten().any(|path| is_stdout(path));
-    if is_stdout_taken { Ok(()) } else { print_to_stdout(&summary::of(&table)) }
+    let chart = chart::bias_chart(&table);
+    arguments.outputs.write(&table.to_csv(), &table, &chart, &summary::of(&table))
 }
 
 fn request(arguments: &BiasArguments) -> Result<BiasRequest, CliError> {

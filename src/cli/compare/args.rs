@@ -1,12 +1,11 @@
 //! What can be typed after `photonvdb compare`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use crate::cli::bias::k_list::{KList, parse_k_list};
 use crate::cli::count::parse_count;
+use crate::cli::table_outputs::TableOutputs;
 
 const EXAMPLES: &str = "\
 Scenes:
@@ -56,17 +55,9 @@ pub struct CompareArguments {
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
 
-    /// Every row as CSV; `-` is stdout
-    #[arg(long, value_name = "OUT.csv")]
-    pub csv: Option<PathBuf>,
-
-    /// Every row and what it cost as JSON; `-` is stdout
-    #[arg(long, value_name = "OUT.json")]
-    pub json: Option<PathBuf>,
-
-    /// Intrinsic bias by k as a chart, with error bars and the laws
-    #[arg(long, value_name = "OUT.svg")]
-    pub plot: Option<PathBuf>,
+    /// Files of the table
+    #[command(flatten)]
+    pub outputs: TableOutputs,
 
     /// Threads to use [default: one a core]; results do not depend on it
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u32).range(1..=1024))]
