@@ -47,7 +47,11 @@ fn biases_are_those_of_the_laws() {
         let difference = (stratified.intrinsic_bias - stratified.count_law_bias).abs();
         let allowed = 3.0 * error + 0.05 * stratified.count_law_bias;
         assert!(difference < allowed, "{stratified:?}");
-        assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.0), "{stratified:?}");
+        // Cells are cubic where queries are: the law of one photon a cubic cell holds.
+        let difference = (stratified.intrinsic_bias - stratified.law_bias).abs();
+        let allowed = 3.0 * error + 0.05 * stratified.law_bias;
+        assert!(difference < allowed, "{stratified:?}");
+        assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.3), "{stratified:?}");
 
         for row in [random, stratified] {
             let both = (1.0 + row.intrinsic_bias) * (1.0 + row.smoothing_bias) - 1.0;

@@ -22,10 +22,19 @@ pub struct Emitter<'a> {
     source: Source<'a>,
     /// Power into the bounds, estimated where it has no closed form \[W, mean channel\].
     power: f64,
-    /// Sizes in the medium of the dimensions before the first flight \[m\].
-    extents: Vec<f64>,
+    /// Sizes in the medium of the dimensions before the first flight.
+    extents: Vec<Size>,
     /// A ball about the medium (about the light, if the medium is infinite).
     extent: Ball,
+}
+
+/// Size in the medium of one dimension of the emission.
+#[derive(Clone, Copy, Debug)]
+enum Size {
+    /// In metres.
+    Fixed(f64),
+    /// In metres a metre of depth: directions into infinite bounds.
+    PerDepth(f64),
 }
 
 /// How each kind of light is sampled.
@@ -68,7 +77,11 @@ impl<'a> Emitter<'a> {
             radius: f64::INFINITY,
         });
         let nothing = |power: Rgb| mean_channel(power) <= 0.0;
-        let size = extent.radius;
+        // From a surface photons go into a hemisphere.
+        let across = match extent.radius {
+            f64::INFINITY => Size::PerDepth((2.0 * PI).sqrt()),
+            radius => Size::Fixed(radius),
+        };
         let (source, power, extents) = match light {
             Light::Point(light) => {
                 let aim = DirectionAim::new(light.position, bounds);
@@ -83,7 +96,7 @@ impl<'a> Emitter<'a> {
                 Some(outline) if !nothing(light.irradiance) => {
                     let (direction, irradiance) = (light.direction, light.irradiance);
                     let power = mean_channel(irradiance) * outline.area();
-                    let lateral = outline.area().sqrt();
+                    let lateral = Size::Fixed(outline.area().sqrt());
                     (Source::Parallel { direction, irradiance, outline }, power, vec![lateral; 2])
                 }
                 _ => Self::dark(),
@@ -92,14 +105,16 @@ impl<'a> Emitter<'a> {
             Light::Quad(light) => {
                 let area = light.area_normal().length();
                 let power = mean_channel(light.radiance) * PI * area;
-                let extents = vec![light.edge_u.length(), light.edge_v.length(), size, size];
+                let edges = [light.edge_u, light.edge_v].map(|edge| Size::Fixed(edge.length()));
+                let extents = vec![edges[0], edges[1], across, across];
                 (Source::Quad { light, bounds }, power, extents)
             }
             Light::Sphere(light) => {
                 let area = 4.0 * PI * light.radius * light.radius;
                 let power = mean_channel(light.radiance) * PI * area;
                 let cap = visible_cap(light, bounds, extent);
-                let extents = vec![light.radius, light.radius, size, size];
+                let radius = Size::Fixed(light.radius);
+                let extents = vec![radius, radius, across, across];
                 (Source::Sphere { light, bounds, cap }, power, extents)
             }
         };
@@ -111,12 +126,12 @@ impl<'a> Emitter<'a> {
         let cells = medium.emissivity.as_ref()?.cells()?;
         let extent = medium.bounds.enclosing_ball()?;
         let [u, v, w] = cells.edges();
-        let extents = vec![u, v, w, extent.radius, extent.radius];
+        let extents = [u, v, w, extent.radius, extent.radius].map(Size::Fixed).to_vec();
         let power = mean_channel(cells.power());
         Some(Self { source: Source::Medium { medium, cells }, power, extents, extent })
     }
 
-    fn spot(spot: &'a SpotLight, bounds: &Bounds, extent: Ball) -> (Source<'a>, f64, Vec<f64>) {
+    fn spot(spot: &'a SpotLight, bounds: &Bounds, extent: Ball) -> (Source<'a>, f64, Vec<Size>) {
         let aim = DirectionAim::new(spot.position, bounds);
         let cone = spot.effective_solid_angle();
         let solid_angle = cone.min(aim.solid_angle());
@@ -135,7 +150,7 @@ impl<'a> Emitter<'a> {
         environment: &'a Environment,
         bounds: &'a Bounds,
         extent: Ball,
-    ) -> (Source<'a>, f64, Vec<f64>) {
+    ) -> (Source<'a>, f64, Vec<Size>) {
         let surface = match bounds {
             Bounds::Sphere { .. } => Surface::Ball(extent),
             Bounds::Infinite => return Self::dark(),
@@ -151,12 +166,13 @@ impl<'a> Emitter<'a> {
             Environment::Constant(radiance) => Source::Surround { radiance: *radiance, surface },
             Environment::Image(_) => Source::Image { environment, bounds },
         };
-        (source, power, vec![area.sqrt(), area.sqrt(), extent.radius, extent.radius])
+        let extents = [area.sqrt(), area.sqrt(), extent.radius, extent.radius];
+        (source, power, extents.map(Size::Fixed).to_vec())
     }
 
     /// A light that sends nothing into the bounds, or has none to aim at.
-    fn dark() -> (Source<'a>, f64, Vec<f64>) {
-        (Source::Dark, 0.0, vec![1.0; 2])
+    fn dark() -> (Source<'a>, f64, Vec<Size>) {
+        (Source::Dark, 0.0, vec![Size::Fixed(1.0); 2])
     }
 
     /// Power into the bounds \[W, mean channel\], exact up to spots cut by the bounds, area lights and images.
@@ -180,7 +196,10 @@ impl<'a> Emitter<'a> {
         let depth = mean_free_path.min(self.extent.radius);
         let flight = (depth / mean_free_path).exp() * mean_free_path;
         let largest = if self.extent.radius.is_finite() { 1e6 * self.extent.radius } else { 1e6 };
-        let lateral = self.extents.iter().map(|&e| if e.is_finite() { e } else { depth });
+        let lateral = self.extents.iter().map(|&size| match size {
+            Size::Fixed(metres) => metres,
+            Size::PerDepth(metres) => metres * depth,
+        });
         lateral.chain([flight.min(largest)]).map(|e| e.max(f64::MIN_POSITIVE)).collect()
     }
 
@@ -317,12 +336,12 @@ fn visible_cap(light: &SphereLight, bounds: &Bounds, extent: Ball) -> Option<(Fr
     Some((Frame::about(to_medium / distance), 1.0 - cosine))
 }
 
-/// The mean size across the beam, where it meets the medium, of a light's directions \[m\].
-fn lateral_extent(position: DVec3, extent: Ball, solid_angle: f64) -> f64 {
-    let distance = position.distance(extent.center);
-    let reach =
-        if distance.is_finite() { distance.max(0.5 * extent.radius) } else { f64::INFINITY };
-    reach * solid_angle.sqrt()
+/// The mean size across the beam, where it meets the medium, of a light's directions.
+fn lateral_extent(position: DVec3, extent: Ball, solid_angle: f64) -> Size {
+    if extent.radius.is_infinite() {
+        return Size::PerDepth(solid_angle.sqrt());
+    }
+    Size::Fixed(position.distance(extent.center).max(0.5 * extent.radius) * solid_angle.sqrt())
 }
 
 #[cfg(test)]
