@@ -69,6 +69,7 @@ pub mod estimate;
 pub mod files;
 pub mod film;
 pub mod lab;
+pub mod lattice;
 pub mod light;
 pub mod map;
 pub mod math;

@@ -36,6 +36,11 @@ impl Camera {
         Some(Self { width, height, position, right: right * half_width, up, forward })
     }
 
+    /// Where the image is taken from \[m\].
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
     /// The ray through image coordinates (`x`, `y`) in pixels; (0, 0) is the top left corner of the image.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let u = 2.0 * x / self.width as f64 - 1.0;

@@ -117,6 +117,18 @@ pub struct RenderArguments {
     #[arg(long, value_name = "E", value_parser = PossibleValuesParser::new(["random", "stratified", "sobol"]))]
     pub emission: Option<String>,
 
+    /// How light scattered twice or more is gathered from photons [default: render.gather of the scene]
+    #[arg(long, value_name = "G", value_parser = PossibleValuesParser::new(["auto", "knn", "lattice"]))]
+    pub gather: Option<String>,
+
+    /// Cells of the lattice along its longest side [default: by the number of photons]
+    #[arg(long, value_name = "CELLS", value_parser = parse_count)]
+    pub lattice: Option<u64>,
+
+    /// Rays a pixel and pass [default: render.samples_per_pixel of the scene]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
+    pub samples: Option<u64>,
+
     /// Seed of every random number: equal seeds give equal images [default: photons.seed of the scene]
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
@@ -280,6 +292,9 @@ impl RenderArguments {
             k: self.k,
             divisor: self.divisor.clone(),
             resolution: self.resolution,
+            gather: self.gather.clone(),
+            lattice: self.lattice,
+            samples_per_pixel: self.samples,
             photons_only: self.photons_only.then_some(true),
             sdf_to_fog: self.sdf_to_fog.then_some(true),
             max_volume_memory: self.volume.max_volume_memory,

@@ -1,7 +1,7 @@
 //! Where a light's photons are worth sending: a density over the first two primary dimensions, by how much of the
 //! light collides there.
 //!
-//! Through sparse smoke most aimed photons would pass without a collision. The guide tabulates the mean opacity
+//! Through sparse smoke most aimed photons would pass without a collision. The guide tabulates the opacity
 //! 1 - T of rays over a grid of the primary square; sending photons by it, each with its power over the density,
 //! makes the powers at first collisions nearly equal and spends none on empty space.
 
@@ -9,9 +9,6 @@ use crate::math::{DVec2, Random, uniform};
 
 /// Cells a side.
 const SIDE: usize = 64;
-
-/// Rays a cell and side of its own grid of probes.
-const PROBES: usize = 2;
 
 /// Share of photons spread evenly, so that what the probes missed is still found.
 const EVEN_SHARE: f64 = 0.05;
@@ -31,14 +28,10 @@ impl Guide {
     pub fn new(random: &mut Random, opacity: impl Fn(DVec2) -> f64) -> Option<(Self, f64)> {
         let mut means = vec![0.0; SIDE * SIDE];
         for (cell, mean) in means.iter_mut().enumerate() {
-            for probe in 0..PROBES * PROBES {
-                let place = |cell: usize, probe: usize, u: f64| {
-                    (cell as f64 + (probe as f64 + u) / PROBES as f64) / SIDE as f64
-                };
-                let x = place(cell % SIDE, probe % PROBES, uniform(random));
-                let y = place(cell / SIDE, probe / PROBES, uniform(random));
-                *mean += opacity(DVec2::new(x, y)) / (PROBES * PROBES) as f64;
-            }
+            let place = |cell: usize, u: f64| (cell as f64 + u) / SIDE as f64;
+            let x = place(cell % SIDE, uniform(random));
+            let y = place(cell / SIDE, uniform(random));
+            *mean = opacity(DVec2::new(x, y));
         }
         let mean = means.iter().sum::<f64>() / means.len() as f64;
         if mean <= 0.0 {

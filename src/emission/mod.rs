@@ -45,6 +45,8 @@ pub struct EmittedPhoton {
     pub first_flight: BoostedQuantile,
     /// The stream of the photon's further path.
     pub random: Random,
+    /// Number of the ray: photons that share one have the same.
+    pub ray_number: u64,
     /// Whether the medium itself emitted it: then its first collision, too, is known from photons alone.
     pub is_from_medium: bool,
 }
@@ -54,10 +56,11 @@ pub struct EmittedPhoton {
 pub struct Emission<'a> {
     seed: u64,
     count: u64,
+    photons_per_ray: u64,
     lights: Vec<LightShare<'a>>,
 }
 
-/// The photons of one light: `first..first + count`.
+/// The rays of one light: `first..first + count`.
 #[derive(Debug)]
 struct LightShare<'a> {
     emitter: Emitter<'a>,
@@ -88,6 +91,22 @@ impl<'a> Emission<'a> {
         count: u64,
         seed: u64,
     ) -> Self {
+        Self::with_shared_rays(lights, medium, opacity, mean_free_path, kind, count, 1, seed)
+    }
+
+    /// The same, but `photons_per_ray` photons at a time leave along one ray, in strata of their first flight: what is
+    /// known of the way through the medium serves them all. `count` is rounded to whole rays.
+    #[expect(clippy::too_many_arguments, reason = "one more than `new`")]
+    pub fn with_shared_rays(
+        lights: &'a [Light],
+        medium: &'a Medium,
+        opacity: impl Fn(&Ray) -> f64,
+        mean_free_path: f64,
+        kind: EmissionKind,
+        count: u64,
+        photons_per_ray: u64,
+        seed: u64,
+    ) -> Self {
         let emitters: Vec<Emitter> = lights
             .iter()
             .map(|light| Emitter::new(light, &medium.bounds))
@@ -95,17 +114,20 @@ impl<'a> Emission<'a> {
             .filter(|emitter| emitter.power_estimate() > 0.0)
             .collect();
         let powers: Vec<f64> = emitters.iter().map(Emitter::power_estimate).collect();
+        let rays = count.div_ceil(photons_per_ray);
         let mut first = 0;
         let mut lights = Vec::new();
         for (index, (emitter, count)) in
-            emitters.into_iter().zip(share_out(count, &powers)).enumerate()
+            emitters.into_iter().zip(share_out(rays, &powers)).enumerate()
         {
             let sampler = match kind {
                 EmissionKind::Random => PrimarySampler::Random,
                 EmissionKind::Stratified => {
                     let extents = emitter.extents(mean_free_path);
-                    // Of a medium's dimensions the flight is one too many.
-                    let extents = &extents[..extents.len().min(MAX_DIMENSIONS)];
+                    // Photons of one ray are strata of its flight; of a medium's dimensions the flight is one too many.
+                    let shared = usize::from(photons_per_ray > 1);
+                    let dimensions = (extents.len() - shared).min(MAX_DIMENSIONS);
+                    let extents = &extents[..dimensions];
                     PrimarySampler::Stratified(Strata::new(count, extents))
                 }
                 EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
@@ -114,7 +136,7 @@ impl<'a> Emission<'a> {
             lights.push(LightShare { emitter, first, count, sampler, guide, collision_boost });
             first += count;
         }
-        Self { seed, count: first, lights }
+        Self { seed, count: first * photons_per_ray, photons_per_ray, lights }
     }
 
     /// Photons of the pass: the count asked for, or 0 where no light reaches the bounds.
@@ -122,28 +144,40 @@ impl<'a> Emission<'a> {
         self.count
     }
 
+    /// Photons that leave along one ray.
+    pub fn photons_per_ray(&self) -> u64 {
+        self.photons_per_ray
+    }
+
     /// Photon `index`, below [`Emission::count`]. `None` where the light sends nothing along the sample,
     /// as outside a spot's cone: the photon counts as emitted with no power.
     pub fn photon(&self, index: u64) -> Option<EmittedPhoton> {
-        let light = self.lights.iter().rev().find(|light| light.first <= index)?;
+        let ray_number = index / self.photons_per_ray;
+        let light = self.lights.iter().rev().find(|light| light.first <= ray_number)?;
         let mut random = Stream::Photon.random(self.seed, index);
-        let sample = light.sampler.sample(index - light.first, &mut random);
-        // The dimensions that lead to the ray come first, then the flight.
-        let [a, b, c, d, e] = sample;
-        let flight_quantile = match sample.get(light.emitter.dimensions()) {
-            Some(&quantile) => quantile,
-            None => uniform(&mut random),
+        let (sample, flight_quantile) = if self.photons_per_ray == 1 {
+            let sample = light.sampler.sample(index - light.first, &mut random);
+            // The dimensions that lead to the ray come first, then the flight.
+            let quantile = sample.get(light.emitter.dimensions()).copied();
+            (sample, quantile.unwrap_or_else(|| uniform(&mut random)))
+        } else {
+            let mut of_ray = Stream::Ray.random(self.seed, ray_number);
+            let sample = light.sampler.sample(ray_number - light.first, &mut of_ray);
+            let stratum = (index % self.photons_per_ray) as f64 + uniform(&mut random);
+            (sample, stratum / self.photons_per_ray as f64)
         };
+        let [a, b, c, d, e] = sample;
         let (place, density) = match &light.guide {
             Some(guide) => guide.warp(DVec2::new(a, b)),
             None => (DVec2::new(a, b), 1.0),
         };
         let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d, e])?;
-        let power = power / (light.count as f64 * density);
+        let photons = light.count * self.photons_per_ray;
+        let power = power / (photons as f64 * density);
         let boost = (light.collision_boost / density).max(1.0);
         let first_flight = BoostedQuantile { u: flight_quantile, boost };
         let is_from_medium = light.emitter.is_medium();
-        Some(EmittedPhoton { ray, power, first_flight, random, is_from_medium })
+        Some(EmittedPhoton { ray, power, first_flight, random, ray_number, is_from_medium })
     }
 }
 

@@ -61,6 +61,19 @@ impl Light {
         }
     }
 
+    /// The light's color, up to a factor; `None` if it has several.
+    pub fn color(&self) -> Option<Rgb> {
+        match self {
+            Self::Point(light) => Some(light.intensity),
+            Self::Spot(light) => Some(light.intensity),
+            Self::Directional(light) => Some(light.irradiance),
+            Self::Environment(Environment::Constant(radiance)) => Some(*radiance),
+            Self::Environment(Environment::Image(_)) => None,
+            Self::Quad(light) => Some(light.radiance),
+            Self::Sphere(light) => Some(light.radiance),
+        }
+    }
+
     /// The part of a ray that the light can reach; `None` if nothing is.
     pub fn lit_span(&self, ray: &Ray, span: Span) -> Option<Span> {
         match self {

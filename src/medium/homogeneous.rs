@@ -58,6 +58,7 @@ pub struct ChromaticExtinction {
 
 impl Extinction for ChromaticExtinction {
     const IS_UNIFORM: bool = true;
+    const IS_CHROMATIC: bool = true;
 
     fn sigma_t(&self, _position: DVec3) -> Rgb {
         self.sigma_t
@@ -71,6 +72,16 @@ impl Extinction for ChromaticExtinction {
 
     fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight {
         self.invert_flight(ray, span, power, uniform(random))
+    }
+
+    fn flying_weight(&self, length: f64, power: Rgb) -> Rgb {
+        let total = power.element_sum();
+        let share = if total > 0.0 { power / total } else { Rgb::splat(1.0 / 3.0) };
+        // Of the channels' depths the least is taken out: none but the others may underflow.
+        let thinnest = self.sigma_t.min_element();
+        let transmittance = exp(-(self.sigma_t - Rgb::splat(thinnest)) * length);
+        let surviving = share.dot(transmittance);
+        if surviving > 0.0 { transmittance / surviving } else { Rgb::ONE }
     }
 
     fn invert_flight(&self, _ray: &Ray, span: Span, power: Rgb, u: f64) -> Flight {
@@ -97,6 +108,7 @@ impl Extinction for ChromaticExtinction {
         power: Rgb,
         boosted: BoostedQuantile,
         _profile: &mut RayProfile,
+        _is_known: bool,
     ) -> BoostedFlight {
         let opacity = self.opacity(ray, span, power);
         let transmittance = exp(-self.optical_depth(ray, span));

@@ -124,6 +124,9 @@ pub trait Extinction: Sync {
     /// Whether sigma_t is the same at every place of the bounds: then no photon needs its own.
     const IS_UNIFORM: bool;
 
+    /// Whether it differs between channels: then photons change colour as they fly.
+    const IS_CHROMATIC: bool = false;
+
     /// sigma_t at a point \[1/m\]; 0 outside a grid's bounds. A uniform extinction does not look at the point.
     fn sigma_t(&self, position: DVec3) -> Rgb;
 
@@ -148,13 +151,19 @@ pub trait Extinction: Sync {
     /// tracking with local majorants in grids.
     fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight;
 
+    /// What a photon of the given power, drawn by [`Extinction::sample_flight`], weighs per channel where it is still flying
+    /// after `length` \[m\]: 1 in the mean of its power.
+    fn flying_weight(&self, _length: f64, _power: Rgb) -> Rgb {
+        Rgb::ONE
+    }
+
     /// The collision at quantile `u` in \[0, 1) of the free-flight distribution, by exact inversion: keeps
     /// the strata of `u` intact.
     fn invert_flight(&self, ray: &Ray, span: Span, power: Rgb, u: f64) -> Flight;
 
     /// A flight made to end in a collision more often than by nature. With opacity o and probability
     /// p = min(1, `boost` o), `boost` >= 1, a `u` below p is a collision at quantile o u / p that carries the share
-    /// o / p of the power; any other escapes. `profile` is memory for grids.
+    /// o / p of the power; any other escapes. `profile` is memory for grids; `is_known` tells that it is still that of this very ray.
     fn boosted_flight(
         &self,
         ray: &Ray,
@@ -162,6 +171,7 @@ pub trait Extinction: Sync {
         power: Rgb,
         boosted: BoostedQuantile,
         _profile: &mut RayProfile,
+        _is_known: bool,
     ) -> BoostedFlight {
         let opacity = self.opacity(ray, span, power);
         boosted.flight(opacity, |quantile| self.invert_flight(ray, span, power, quantile))

@@ -33,6 +33,11 @@ impl<'a> ByTransmittance<'a> {
         (opacity.max_element() > 0.0).then_some(Self { profile, depth_before, opacity, channels })
     }
 
+    /// The largest channel's 1 - T over the part.
+    pub fn opacity(&self) -> f64 {
+        self.opacity.max_element()
+    }
+
     /// The distance at quantile `u`; `pick` in \[0, 1) chooses the channel of a chromatic medium.
     pub fn sample_distance(&self, u: f64, pick: f64) -> f64 {
         let channel = self.pick_channel(pick);

@@ -41,23 +41,8 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
     ) -> Result<Self, RenderError> {
         let medium = &scene.medium;
         let started = Instant::now();
-        let emission = Emission::new(
-            &scene.lights,
-            medium,
-            |ray| {
-                let span = medium.bounds.intersect(ray);
-                span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
-            },
-            mean_free_path(extinction, &medium.bounds),
-            scene.photons.emission,
-            scene.photons.count,
-            seed,
-        );
-        let settings = TraceSettings {
-            max_order: scene.photons.max_order,
-            min_stored_order: u32::from(!scene.render.photons_only),
-            max_stored: MAX_STORED,
-        };
+        let emission = scene_emission(scene, extinction, 1, seed);
+        let settings = trace_settings(scene);
         let lit_from = scene.lights.iter().find_map(|light| light.position());
         let frame = MapFrame::of(medium, lit_from);
         observer.stage_started(Stage::Trace, emission.count());
@@ -90,7 +75,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
     }
 
     /// A reader for one thread.
-    pub fn reader(&self) -> Reader<'_, E> {
+    pub fn reader(&self) -> Reader<'_, E, Estimator<'_, E>> {
         let estimate = &self.scene.estimate;
         let unit = self.map.frame().unit;
         let options = EstimateOptions {
@@ -106,6 +91,38 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
     /// The photon map.
     pub fn map(&self) -> &PhotonMap {
         &self.map
+    }
+}
+
+/// The photons of one pass.
+pub(super) fn scene_emission<'a, E: Extinction>(
+    scene: &'a Scene,
+    extinction: &E,
+    photons_per_ray: u64,
+    seed: u64,
+) -> Emission<'a> {
+    let medium = &scene.medium;
+    Emission::with_shared_rays(
+        &scene.lights,
+        medium,
+        |ray| {
+            let span = medium.bounds.intersect(ray);
+            span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
+        },
+        mean_free_path(extinction, &medium.bounds),
+        scene.photons.emission,
+        scene.photons.count,
+        photons_per_ray,
+        seed,
+    )
+}
+
+/// What is kept of their paths.
+pub(super) fn trace_settings(scene: &Scene) -> TraceSettings {
+    TraceSettings {
+        max_order: scene.photons.max_order,
+        min_stored_order: u32::from(!scene.render.photons_only),
+        max_stored: MAX_STORED,
     }
 }
 

@@ -1,6 +1,6 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
 
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Estimator};
 use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
     ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction,
@@ -76,7 +76,7 @@ impl<'a> LitScene<'a> {
     }
 }
 
-impl<E: Extinction> LightReader for Reader<'_, E> {
+impl<'a, E: Extinction> LightReader for Reader<'a, E, Estimator<'a, E>> {
     fn radiance(&mut self, ray: &Ray, max_distance: f64, random: &mut Random) -> RayRadiance {
         self.light_along(ray, max_distance, random)
     }

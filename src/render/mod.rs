@@ -6,13 +6,16 @@
 mod distances;
 mod emitted_light;
 mod film_pass;
+mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
 mod observer;
 mod photon_query;
 mod pixel_peak;
+mod pixel_samples;
 mod reader;
 mod report;
+mod scattered_light;
 mod shadow;
 mod single_scatter;
 
@@ -21,6 +24,7 @@ pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
 pub use reader::{RayRadiance, Reader};
 pub use report::{RenderReport, StageSeconds};
+pub use scattered_light::Gather;
 
 use std::time::Instant;
 
@@ -29,6 +33,7 @@ use crate::map::MapError;
 use crate::math::Stream;
 use crate::medium::{Bounds, Extinction, MediumExtinction};
 use crate::scene::Scene;
+use scattered_light::ScatteredLight;
 
 /// How a scene is rendered.
 #[derive(Clone, Copy, Debug)]
@@ -96,14 +101,20 @@ fn render_passes<E: Extinction>(
 ) -> Result<Rendering, RenderError> {
     let mut film = Film::new(scene.camera.width, scene.camera.height);
     let mut report = RenderReport::default();
+    let gather = scene.render.gather.unwrap_or(Gather::Lattice);
     for pass in 0..options.passes.max(1) {
         let seed = pass_seed(scene.photons.seed, pass);
-        let lit = LitMedium::prepare(scene, extinction, seed, observer, &mut report)?;
-        let started = Instant::now();
-        observer.stage_started(Stage::Gather, film.pixels.len() as u64);
-        film_pass::add_pass(&mut film, scene, &lit, seed, observer);
-        observer.stage_finished(Stage::Gather);
-        report.seconds.gather += started.elapsed().as_secs_f64();
+        match gather {
+            Gather::Knn => {
+                let lit = LitMedium::prepare(scene, extinction, seed, observer, &mut report)?;
+                add_pass(&mut film, scene, || lit.reader(), pass, observer, &mut report);
+            }
+            Gather::Lattice => {
+                let lattice = lit_lattice::trace(scene, extinction, seed, observer, &mut report)?;
+                let reader = || Reader::new(scene, extinction, &lattice);
+                add_pass(&mut film, scene, reader, pass, observer, &mut report);
+            }
+        }
         report.passes_done += 1;
         if observer.cancelled() {
             break;
@@ -112,6 +123,22 @@ fn render_passes<E: Extinction>(
     let share = 1.0 / f64::from(report.passes_done);
     film.pixels.iter_mut().for_each(|pixel| *pixel = scaled(pixel, share));
     Ok(Rendering { film, report })
+}
+
+/// Gathers a pass, timed and observed.
+fn add_pass<'a, E: Extinction + 'a, S: ScatteredLight>(
+    film: &mut Film,
+    scene: &'a Scene,
+    reader: impl Fn() -> Reader<'a, E, S> + Sync,
+    pass: u32,
+    observer: &dyn Observer,
+    report: &mut RenderReport,
+) {
+    let started = Instant::now();
+    observer.stage_started(Stage::Gather, film.pixels.len() as u64);
+    film_pass::add_pass(film, scene, reader, pass, observer);
+    observer.stage_finished(Stage::Gather);
+    report.seconds.gather += started.elapsed().as_secs_f64();
 }
 
 /// The seed of a pass: the scene's own for the first, so that one pass is the render without passes.

@@ -6,6 +6,7 @@ use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
+use crate::render::scattered_light::ScatteredLight;
 use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
 use crate::scene::Scene;
@@ -24,24 +25,26 @@ pub struct RayRadiance {
 }
 
 /// Reads a lit medium, from one thread: light along rays.
-pub struct Reader<'a, E> {
+pub struct Reader<'a, E, S> {
     scene: &'a Scene,
     extinction: &'a E,
-    estimator: Estimator<'a, E>,
+    scattered_light: S,
     profile: RayProfile,
     queries: Vec<PhotonQuery>,
 }
 
-impl<'a, E: Extinction> Reader<'a, E> {
-    /// A reader.
-    pub fn new(scene: &'a Scene, extinction: &'a E, estimator: Estimator<'a, E>) -> Self {
-        let (profile, queries) = (RayProfile::default(), Vec::new());
-        Self { scene, extinction, estimator, profile, queries }
-    }
-
+impl<'a, E: Extinction> Reader<'a, E, Estimator<'a, E>> {
     /// Estimates at places.
     pub fn estimator(&mut self) -> &mut Estimator<'a, E> {
-        &mut self.estimator
+        &mut self.scattered_light
+    }
+}
+
+impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
+    /// A reader, to which `scattered_light` says what is scattered more than once.
+    pub fn new(scene: &'a Scene, extinction: &'a E, scattered_light: S) -> Self {
+        let (profile, queries) = (RayProfile::default(), Vec::new());
+        Self { scene, extinction, scattered_light, profile, queries }
     }
 
     /// Transmittance of a ray up to `max_distance` \[m\].
@@ -59,9 +62,10 @@ impl<'a, E: Extinction> Reader<'a, E> {
     ) -> RayRadiance {
         let mut queries = std::mem::take(&mut self.queries);
         queries.clear();
-        let mut radiance = self.direct_light(ray, max_distance, &[], 0, &mut queries, random);
+        let mut radiance =
+            self.direct_light(ray, max_distance, &[], 0, uniform(random), &mut queries, random);
         for query in &queries {
-            let scattered = self.from_photons(query);
+            let scattered = self.answer(query);
             radiance.single_scatter += scattered.single;
             radiance.multiple_scatter += scattered.multiple;
         }
@@ -70,13 +74,15 @@ impl<'a, E: Extinction> Reader<'a, E> {
     }
 
     /// The part of that light that needs no photons, and the queries, for `pixel`, that give the rest. `skipped` names
-    /// lights whose single scattering is computed elsewhere.
+    /// lights whose single scattering is computed elsewhere; `phase`, uniform in \[0, 1), is where in each stratum of the ray it is
+    /// looked at.
     pub fn direct_light(
         &mut self,
         ray: &Ray,
         max_distance: f64,
         skipped: &[usize],
         pixel: u32,
+        phase: f64,
         queries: &mut Vec<PhotonQuery>,
         random: &mut Random,
     ) -> RayRadiance {
@@ -102,9 +108,9 @@ impl<'a, E: Extinction> Reader<'a, E> {
             radiance.emission += emitted_light(medium, emissivity, ray, span, profile, random);
         }
         if !self.scene.render.photons_only {
-            radiance.single_scatter = self.single_scatter(ray, span, skipped, random);
+            radiance.single_scatter = self.single_scatter(ray, span, skipped, phase, random);
         }
-        self.push_queries(ray, span, pixel, queries, random);
+        self.push_queries(ray, span, pixel, phase, queries, random);
         radiance
     }
 
@@ -114,11 +120,17 @@ impl<'a, E: Extinction> Reader<'a, E> {
         ray: &Ray,
         light: usize,
         samples: usize,
+        phase: f64,
         random: &mut Random,
     ) -> Rgb {
         let Some(span) = self.scene.medium.bounds.intersect(ray) else { return Rgb::ZERO };
         self.extinction.profile(ray, span, &mut self.profile);
-        self.scattering_ray(ray, span).single_scatter(&self.scene.lights[light], samples, random)
+        self.scattering_ray(ray, span).single_scatter(
+            &self.scene.lights[light],
+            samples,
+            phase,
+            random,
+        )
     }
 
     fn scattering_ray<'r>(&'r self, ray: &'r Ray, span: Span) -> ScatteringRay<'r, E> {
@@ -126,11 +138,18 @@ impl<'a, E: Extinction> Reader<'a, E> {
         ScatteringRay { medium, extinction: self.extinction, ray, span, profile }
     }
 
-    fn single_scatter(&self, ray: &Ray, span: Span, skipped: &[usize], random: &mut Random) -> Rgb {
+    fn single_scatter(
+        &self,
+        ray: &Ray,
+        span: Span,
+        skipped: &[usize],
+        phase: f64,
+        random: &mut Random,
+    ) -> Rgb {
         let scattering = self.scattering_ray(ray, span);
         let samples = self.scene.render.light_samples;
         let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
-        lights.map(|(_, light)| scattering.single_scatter(light, samples, random)).sum()
+        lights.map(|(_, light)| scattering.single_scatter(light, samples, phase, random)).sum()
     }
 
     /// Lights seen along the ray.
@@ -146,6 +165,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
         ray: &Ray,
         span: Span,
         pixel: u32,
+        phase: f64,
         queries: &mut Vec<PhotonQuery>,
         random: &mut Random,
     ) {
@@ -153,7 +173,7 @@ impl<'a, E: Extinction> Reader<'a, E> {
         let samples = self.scene.render.march_samples;
         let count = samples as f64;
         for stratum in 0..samples {
-            let u = (stratum as f64 + uniform(random)) / count;
+            let u = (stratum as f64 + phase) / count;
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
@@ -165,8 +185,9 @@ impl<'a, E: Extinction> Reader<'a, E> {
     }
 
     /// The answer to a query, weighted.
-    pub fn from_photons(&mut self, query: &PhotonQuery) -> InScattered {
-        let mut scattered = self.estimator.in_scattered(query.place, query.towards, query.turn);
+    pub fn answer(&mut self, query: &PhotonQuery) -> InScattered {
+        let mut scattered =
+            self.scattered_light.in_scattered(query.place, query.towards, query.turn);
         scattered.single *= query.weight;
         scattered.multiple *= query.weight;
         scattered

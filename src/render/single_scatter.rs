@@ -11,6 +11,9 @@ use crate::medium::{Extinction, Medium, RayProfile};
 use crate::render::distances::{ByTransmittance, EquiAngular};
 use crate::render::shadow::transmittance_to;
 
+/// Opacity up to which a uniform medium's transmittance counts as smooth: an optical depth of 4.
+const SMOOTH_OPACITY: f64 = 0.98;
+
 /// One ray of which the single scattering is asked.
 pub struct ScatteringRay<'a, E> {
     /// The medium.
@@ -26,8 +29,14 @@ pub struct ScatteringRay<'a, E> {
 }
 
 impl<E: Extinction> ScatteringRay<'_, E> {
-    /// Radiance of one light, scattered once, from `samples` distances.
-    pub fn single_scatter(&self, light: &Light, samples: usize, random: &mut Random) -> Rgb {
+    /// Radiance of one light, scattered once, from `samples` distances: one in each stratum, at `phase` of it.
+    pub fn single_scatter(
+        &self,
+        light: &Light,
+        samples: usize,
+        phase: f64,
+        random: &mut Random,
+    ) -> Rgb {
         let Some(span) = light.lit_span(self.ray, self.span) else { return Rgb::ZERO };
         let Some(by_transmittance) = ByTransmittance::new(self.profile, span) else {
             return Rgb::ZERO;
@@ -35,14 +44,14 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         match (light, light.center()) {
             (_, Some(center)) => {
                 let equi_angular = EquiAngular::new(self.ray, span, center);
-                self.by_both(light, &equi_angular, &by_transmittance, samples, random)
+                self.by_both(light, &equi_angular, &by_transmittance, samples, phase, random)
             }
             (Light::Environment(environment), _) => {
-                self.strata(&by_transmittance, samples, random, |place, random| {
+                self.strata(&by_transmittance, samples, phase, random, |place, random| {
                     self.environment_light(environment, place, random)
                 })
             }
-            _ => self.strata(&by_transmittance, samples, random, |place, random| {
+            _ => self.strata(&by_transmittance, samples, phase, random, |place, random| {
                 self.light_towards_camera(light, place, random)
             }),
         }
@@ -53,13 +62,14 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         &self,
         by_transmittance: &ByTransmittance,
         samples: usize,
+        phase: f64,
         random: &mut Random,
         mut scattered: impl FnMut(DVec3, &mut Random) -> Rgb,
     ) -> Rgb {
         let count = samples as f64;
         let mut sum = Rgb::ZERO;
         for stratum in 0..samples {
-            let u = (stratum as f64 + uniform(random)) / count;
+            let u = (stratum as f64 + phase) / count;
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = self.ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
@@ -76,17 +86,20 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         equi_angular: &EquiAngular,
         by_transmittance: &ByTransmittance,
         samples: usize,
+        phase: f64,
         random: &mut Random,
     ) -> Rgb {
-        let near_light = samples.div_ceil(2);
-        let far = samples - near_light;
+        // Seen from the light, what is left of the integrand in thin even media is smooth: strata of the angle do best alone.
+        let even = E::IS_UNIFORM && by_transmittance.opacity() <= SMOOTH_OPACITY;
+        let far = if even { 0 } else { samples / 2 };
+        let near_light = samples - far;
         let mut sum = Rgb::ZERO;
         for sample in 0..samples {
             let distance = if sample < near_light {
-                let u = (sample as f64 + uniform(random)) / near_light as f64;
+                let u = (sample as f64 + phase) / near_light as f64;
                 equi_angular.sample_distance(u)
             } else {
-                let u = ((sample - near_light) as f64 + uniform(random)) / far as f64;
+                let u = ((sample - near_light) as f64 + phase) / far as f64;
                 by_transmittance.sample_distance(u, uniform(random))
             };
             let place = self.ray.at(distance);

@@ -37,7 +37,8 @@ use std::path::Path;
 
 use crate::camera::Camera;
 use crate::light::Light;
-use crate::medium::Medium;
+use crate::math::Rgb;
+use crate::medium::{Medium, MediumExtinction};
 use error::Problem;
 use volume::VolumeRules;
 
@@ -83,6 +84,17 @@ impl Scene {
         let directory = path.parent().unwrap_or(Path::new(""));
         Self::build(&file, directory, &overrides.volume_rules())
             .map_err(|problem| problem.locate(path, &tree))
+    }
+
+    /// Whether all light and all scattering is the same in the three channels.
+    pub fn is_grey(&self) -> bool {
+        let grey = |color: Rgb| color.x == color.y && color.y == color.z;
+        let medium = &self.medium;
+        grey(medium.albedo)
+            && medium.color.is_none()
+            && medium.emissivity.is_none()
+            && !matches!(medium.extinction, MediumExtinction::Chromatic(_))
+            && self.lights.iter().all(|light| light.color().is_some_and(grey))
     }
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {

@@ -19,6 +19,12 @@ pub struct Overrides {
     pub divisor: Option<String>,
     /// `camera.resolution`: width, height \[pixels\].
     pub resolution: Option<[u64; 2]>,
+    /// `render.gather`, as the file spells it.
+    pub gather: Option<String>,
+    /// `render.lattice`
+    pub lattice: Option<u64>,
+    /// `render.samples_per_pixel`
+    pub samples_per_pixel: Option<u64>,
     /// `render.photons_only`
     pub photons_only: Option<bool>,
     /// `medium.sdf_to_fog`
@@ -49,6 +55,9 @@ impl Overrides {
         set("photons", "seed", self.seed.map(integer));
         set("estimate", "k", self.k.map(integer));
         set("estimate", "divisor", self.divisor.clone().map(Value::Text));
+        set("render", "gather", self.gather.clone().map(Value::Text));
+        set("render", "lattice", self.lattice.map(integer));
+        set("render", "samples_per_pixel", self.samples_per_pixel.map(integer));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
         set("medium", "sdf_to_fog", self.sdf_to_fog.map(Value::Boolean));
         let resolution = self.resolution.map(|sides| {

@@ -8,17 +8,20 @@
 
 mod balance;
 mod frame;
+mod path;
 mod photon;
 
 pub use balance::PowerBalance;
 pub use frame::MapFrame;
+pub use path::Keep;
 pub use photon::Photon;
 
+use path::Path;
 use rayon::prelude::*;
 
-use crate::emission::{Emission, EmittedPhoton};
-use crate::math::{Ray, Rgb, max_channel, uniform};
-use crate::medium::{Extinction, Flight, Medium, RayProfile};
+use crate::emission::Emission;
+use crate::math::{Ray, Rgb, Span};
+use crate::medium::{Extinction, Medium};
 
 /// Photons traced by one task: small enough to balance the load, large enough to be worth a task.
 const SHARE: u64 = 8192;
@@ -48,7 +51,7 @@ pub struct TracedPhotons {
     pub overflow: bool,
 }
 
-/// Traces all photons of `emission`. `advanced` is told of photons done, from any thread; `cancelled` ends early.
+/// Traces all photons of `emission` and stores their collisions. `advanced` is told of photons done, from any thread.
 pub fn trace_photons<E: Extinction>(
     emission: &Emission,
     medium: &Medium,
@@ -63,115 +66,82 @@ pub fn trace_photons<E: Extinction>(
     let batch = 64 * rayon::current_num_threads() as u64;
     let mut traced = TracedPhotons { emitted_count: count, ..TracedPhotons::default() };
     for first in (0..shares).step_by(batch as usize) {
-        let parts: Vec<Path<E>> = (first..(first + batch).min(shares))
+        let parts: Vec<(Vec<Photon>, PowerBalance)> = (first..(first + batch).min(shares))
             .into_par_iter()
             .map(|share| {
                 let end = ((share + 1) * SHARE).min(count);
-                let mut path = Path::new(medium, extinction, frame, settings);
-                for index in share * SHARE..end {
-                    if let Some(photon) = emission.photon(index) {
-                        path.follow(photon);
-                    }
-                }
+                let keep = Collisions { frame, extinction, photons: Vec::new() };
+                let mut path = Path::new(medium, extinction, settings, keep);
+                (share * SHARE..end)
+                    .filter_map(|index| emission.photon(index))
+                    .for_each(|photon| path.follow(photon));
                 advanced(end - share * SHARE);
-                path
+                (path.keep.photons, path.balance)
             })
             .collect();
-        for part in parts {
-            traced.balance.add(&part.balance);
-            if traced.photons.len() + part.photons.len() > settings.max_stored {
+        for (photons, balance) in parts {
+            traced.balance.add(&balance);
+            if traced.photons.len() + photons.len() > settings.max_stored {
                 traced.overflow = true;
                 return traced;
             }
-            traced.photons.extend_from_slice(&part.photons);
+            traced.photons.extend_from_slice(&photons);
         }
     }
     traced
 }
 
-/// The paths of one share of the photons.
-struct Path<'a, E> {
-    medium: &'a Medium,
-    extinction: &'a E,
-    frame: MapFrame,
+/// Traces all photons of `emission` into `keeps`, in parallel: keep i of n takes rays i, i + n, i + 2 n and so on with all
+/// photons of each, so that what each of them sees is a thinner version of the whole. The balance is that of all photons.
+pub fn trace_into<E: Extinction, K: Keep>(
+    emission: &Emission,
+    medium: &Medium,
+    extinction: &E,
     settings: TraceSettings,
-    photons: Vec<Photon>,
-    balance: PowerBalance,
-    profile: RayProfile,
+    keeps: Vec<K>,
+    advanced: impl Fn(u64) + Sync,
+) -> (Vec<K>, PowerBalance) {
+    let step = keeps.len().max(1);
+    let per_ray = emission.photons_per_ray();
+    let rays = emission.count() / per_ray;
+    let traced: Vec<(K, PowerBalance)> = keeps
+        .into_par_iter()
+        .enumerate()
+        .map(|(first, keep)| {
+            let mut path = Path::new(medium, extinction, settings, keep);
+            let mut unreported = 0;
+            for ray in (first as u64..rays).step_by(step) {
+                (ray * per_ray..(ray + 1) * per_ray)
+                    .filter_map(|index| emission.photon(index))
+                    .for_each(|photon| path.follow(photon));
+                unreported += per_ray;
+                if unreported >= SHARE {
+                    advanced(unreported);
+                    unreported = 0;
+                }
+            }
+            advanced(unreported);
+            (path.keep, path.balance)
+        })
+        .collect();
+    let mut balance = PowerBalance::default();
+    traced.iter().for_each(|(_, of_keep)| balance.add(of_keep));
+    (traced.into_iter().map(|(keep, _)| keep).collect(), balance)
 }
 
-impl<'a, E: Extinction> Path<'a, E> {
-    fn new(
-        medium: &'a Medium,
-        extinction: &'a E,
-        frame: MapFrame,
-        settings: TraceSettings,
-    ) -> Self {
-        let (photons, balance) = (Vec::new(), PowerBalance::default());
-        let profile = RayProfile::default();
-        Self { medium, extinction, frame, settings, photons, balance, profile }
-    }
+/// Keeps the collisions, for a photon map.
+struct Collisions<'a, E> {
+    frame: MapFrame,
+    extinction: &'a E,
+    photons: Vec<Photon>,
+}
 
-    /// Follows one photon from its light to its end.
-    fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, first_flight, mut random, is_from_medium } = photon;
-        let min_stored_order = if is_from_medium { 0 } else { self.settings.min_stored_order };
-        self.balance.emitted += power;
-        for order in 0.. {
-            let Some(span) = self.medium.bounds.intersect(&ray) else { break };
-            let flight = if order == 0 {
-                let profile = &mut self.profile;
-                let boosted =
-                    self.extinction.boosted_flight(&ray, span, power, first_flight, profile);
-                let passing = power * (1.0 - boosted.share);
-                let escaped = self.reweigh(passing, boosted.escape_weight);
-                self.balance.escaped += escaped;
-                power *= boosted.share;
-                boosted.flight
-            } else {
-                self.extinction.sample_flight(&ray, span, power, &mut random)
-            };
-            let distance = match flight {
-                Flight::Escape { weight } => {
-                    power = self.reweigh(power, weight);
-                    break;
-                }
-                Flight::Collision { distance, weight } => {
-                    power = self.reweigh(power, weight);
-                    distance
-                }
-            };
-            ray.origin = ray.at(distance);
-            if order >= min_stored_order {
-                self.store(&ray, power, order);
-            }
-            if order >= self.settings.max_order {
-                self.balance.truncated += power;
-                return;
-            }
-            let scattered = power * self.medium.albedo_at(ray.origin);
-            let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
-            if survival < 1.0 && uniform(&mut random) >= survival {
-                self.balance.absorbed += power;
-                return;
-            }
-            let survivor = scattered / survival;
-            self.balance.absorbed += power - survivor;
-            power = survivor;
-            ray.direction = self.medium.phase.sample_direction(ray.direction, &mut random);
-        }
-        self.balance.escaped += power;
-    }
+impl<E: Extinction> Keep for Collisions<'_, E> {
+    const FLIGHTS: bool = false;
 
-    /// Applies the weight of a flight, which is 1 but in chromatic media.
-    fn reweigh(&mut self, power: Rgb, weight: Rgb) -> Rgb {
-        let weighted = power * weight;
-        self.balance.resampled += power - weighted;
-        weighted
-    }
+    fn flight(&mut self, _: &Ray, _: Span, _: Rgb, _: u32) {}
 
-    /// Stores the collision at the ray's origin.
-    fn store(&mut self, ray: &Ray, power: Rgb, order: u32) {
+    fn collision(&mut self, ray: &Ray, power: Rgb, order: u32) {
         let sigma_t =
             if E::IS_UNIFORM { 0.0 } else { self.extinction.sigma_t(ray.origin).max_element() };
         self.photons.push(Photon {

@@ -167,8 +167,11 @@ impl Extinction for GridExtinction {
         _: Rgb,
         boosted: BoostedQuantile,
         profile: &mut RayProfile,
+        is_known: bool,
     ) -> BoostedFlight {
-        self.profile(ray, span, profile);
+        if !is_known {
+            self.profile(ray, span, profile);
+        }
         let opacity = -(-profile.optical_depth(span.end).x).exp_m1();
         boosted.flight(opacity, |quantile| {
             let distance = profile.distance_at(-(-quantile).ln_1p(), 0);

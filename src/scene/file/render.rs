@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::table::Table;
+use crate::render::Gather;
 use crate::scene::error::Problem;
 
 /// `[render]`: how pixels are sampled.
@@ -12,6 +13,8 @@ use crate::scene::error::Problem;
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
+/// | `gather` | `"auto"`, `"knn"`, `"lattice"` | | `"auto"` | | how light scattered twice or more is gathered from photons |
+/// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -21,21 +24,47 @@ pub struct RenderSettings {
     pub march_samples: usize,
     /// Single-scattering points a ray and light.
     pub light_samples: usize,
+    /// How light scattered twice or more is gathered; `None`: the plan chooses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gather: Option<Gather>,
+    /// Cells of the lattice along its longest side; `None`: by the number of photons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<usize>,
     /// Whether single scattering, too, comes from photons (for the lab).
     pub photons_only: bool,
 }
 
 impl RenderSettings {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
-        table.allow(&["samples_per_pixel", "march_samples", "light_samples", "photons_only"])?;
+        table.allow(&[
+            "samples_per_pixel",
+            "march_samples",
+            "light_samples",
+            "gather",
+            "lattice",
+            "photons_only",
+        ])?;
+        let photons_only = table.get_or("photons_only", false)?;
+        let gather = table.choose("gather", &GATHERS)?.flatten();
+        let needs_map = photons_only && gather.is_some_and(|gather| gather != Gather::Knn);
+        table.ensure("gather", !needs_map, "must be \"knn\" where photons_only is true")?;
+        let lattice: Option<u64> = table.get("lattice")?;
+        let fits = lattice.is_none_or(|cells| (2..=512).contains(&cells));
+        table.ensure("lattice", fits, "must lie in 2 to 512")?;
         Ok(Self {
             samples_per_pixel: read_count(table, "samples_per_pixel", 4)?,
             march_samples: read_count(table, "march_samples", 8)?,
             light_samples: read_count(table, "light_samples", 8)?,
-            photons_only: table.get_or("photons_only", false)?,
+            gather,
+            lattice: lattice.map(|cells| cells as usize),
+            photons_only,
         })
     }
 }
+
+/// `None` stands for the plan's own choice.
+const GATHERS: [(&str, Option<Gather>); 3] =
+    [("auto", None), ("knn", Some(Gather::Knn)), ("lattice", Some(Gather::Lattice))];
 
 fn read_count(table: &Table, key: &str, default: u64) -> Result<usize, Problem> {
     let count = table.get_or(key, default)?;

@@ -1,0 +1,65 @@
+//! Photons' flights into a lattice.
+
+use crate::lattice::walk::walk_cells;
+use crate::lattice::{CellLight, LatticeShape};
+use crate::math::{DVec3, Ray, Rgb, Span};
+use crate::medium::{Extinction, Phase};
+use crate::trace::Keep;
+
+/// Takes flights: adds power times length, weighted by how much of it would scatter towards the camera, to the cells crossed.
+pub struct Deposit<'a, E, L> {
+    shape: &'a LatticeShape,
+    extinction: &'a E,
+    phase: Phase,
+    /// Where light is wanted \[m\].
+    camera: DVec3,
+    /// Power times length a cell \[W m\], times the phase function \[1/sr\].
+    sums: Vec<L>,
+}
+
+impl<'a, E: Extinction, L: CellLight> Deposit<'a, E, L> {
+    /// An empty lattice.
+    pub fn new(shape: &'a LatticeShape, extinction: &'a E, phase: Phase, camera: DVec3) -> Self {
+        let sums = vec![L::default(); shape.cell_count()];
+        Self { shape, extinction, phase, camera, sums }
+    }
+
+    /// What was added to each cell, x fastest.
+    pub fn into_sums(self) -> Vec<L> {
+        self.sums
+    }
+}
+
+impl<E: Extinction, L: CellLight> Keep for Deposit<'_, E, L> {
+    const FLIGHTS: bool = true;
+
+    fn flight(&mut self, ray: &Ray, flight: Span, power: Rgb, _order: u32) {
+        let Self { shape, extinction, phase, camera, sums } = self;
+        if phase.is_isotropic() && !E::IS_CHROMATIC {
+            let light = L::from_rgb(power * phase.density(1.0));
+            walk_cells(shape, ray, flight, |cell, enters, leaves| {
+                sums[cell] += light * (leaves - enters) as f32;
+            });
+            return;
+        }
+        let light = L::from_rgb(power);
+        // |camera - at(t)|^2 = along^2 + across^2, along the way left to the point nearest to the camera.
+        let to_camera = *camera - ray.origin;
+        let nearest = to_camera.dot(ray.direction);
+        let across = (to_camera - ray.direction * nearest).length_squared();
+        walk_cells(shape, ray, flight, |cell, enters, leaves| {
+            let middle = 0.5 * (enters + leaves);
+            let along = nearest - middle;
+            let distance = (along * along + across).sqrt().max(f64::MIN_POSITIVE);
+            let weight = phase.density(along / distance) * (leaves - enters);
+            sums[cell] += if E::IS_CHROMATIC {
+                let colour = extinction.flying_weight(middle - flight.start, power);
+                L::from_rgb(power * colour * weight)
+            } else {
+                light * weight as f32
+            };
+        });
+    }
+
+    fn collision(&mut self, _: &Ray, _: Rgb, _: u32) {}
+}
