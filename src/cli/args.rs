@@ -292,6 +292,7 @@ impl RenderArguments {
         ExtraLayers {
             photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
             kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
+            variance: false,
         }
     }
 }

@@ -21,6 +21,8 @@ pub enum Stream {
     Experiment = 4,
     /// Probes of where photons are worth sending.
     Guide = 5,
+    /// Paths of the reference path tracer.
+    Reference = 6,
 }
 
 impl Stream {
