@@ -21,6 +21,8 @@ fn gradient(width: usize, height: usize) -> Film {
             transmittance: Rgb::new(0.75, 0.5, 0.25),
             photon_count: 100.0,
             kernel_radius: 0.5,
+            variance: Rgb::new(0.5, 0.0625, 0.0),
+            sample_count: 64.0,
         };
     }
     film
@@ -55,7 +57,7 @@ fn layers_hold_the_parts_of_the_image() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
     let film = gradient(20, 18);
-    let extra = ExtraLayers { photon_count: true, kernel_radius: true };
+    let extra = ExtraLayers { photon_count: true, kernel_radius: true, variance: true };
     write_exr(&path, &film, &extra, &metadata()).unwrap();
 
     let image = read_all_flat_layers_from_file(&path).unwrap();
@@ -65,7 +67,7 @@ fn layers_hold_the_parts_of_the_image() {
         let channel = channels.iter().find(|channel| channel.name.eq(name)).unwrap();
         channel.sample_data.value_by_flat_index(index).to_f32()
     };
-    assert_eq!(channels.len(), 18);
+    assert_eq!(channels.len(), 22);
     let index = 20 * 17 + 3;
     let base = index as f32;
     assert_eq!(value("A", index), 0.5);
@@ -76,13 +78,15 @@ fn layers_hold_the_parts_of_the_image() {
     assert_eq!(value("transmittance.B", index), 0.25);
     assert_eq!(value("photon_count", index), 100.0);
     assert_eq!(value("kernel_radius", index), 0.5);
+    assert_eq!(value("variance.G", index), 0.0625);
+    assert_eq!(value("sample_count", index), 64.0);
 }
 
 #[test]
 fn description_lists_layers_and_metadata() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
-    let extra = ExtraLayers { photon_count: true, kernel_radius: false };
+    let extra = ExtraLayers { photon_count: true, ..ExtraLayers::default() };
     write_exr(&path, &gradient(8, 4), &extra, &metadata()).unwrap();
 
     let description = describe_exr(&path).unwrap();

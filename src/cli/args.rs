@@ -12,6 +12,7 @@ use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
 use super::count::{parse_count, parse_resolution};
+use super::reference::args::ReferenceArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,6 +20,8 @@ Examples:
       Render a scene and look at it.
   photonvdb render cloud.toml -o cloud.exr --photons 1e7 --passes 16
       Sixteen independent passes of ten million photons, averaged.
+  photonvdb reference fog.toml -o truth.exr --target-error 0.01
+      The same image by path tracing, with its variance.
   photonvdb bias 3d-random 3d-jittered --k 10,50,100
       How far k-nearest estimates are off, exact and measured.
   photonvdb compare analytic:point-absorbing --k 10,50,100
@@ -76,6 +79,8 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to OpenEXR
     Render(Box<RenderArguments>),
+    /// Render a scene without photons and without bias, however long it takes: what others are compared with
+    Reference(Box<ReferenceArguments>),
     /// Measure the bias of density estimates on models whose truth is known
     Bias(Box<BiasArguments>),
     /// Measure random against stratified emission where the power density is known
@@ -307,6 +312,7 @@ impl RenderArguments {
         ExtraLayers {
             photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
             kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
+            variance: false,
         }
     }
 }
@@ -317,7 +323,7 @@ fn parse_passes(text: &str) -> Result<u32, String> {
 }
 
 /// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
-fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
+pub fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
     match Path::new(text).extension() {
         Some(extension) if !extension.eq_ignore_ascii_case("exr") => Err(format!(
             "the image is written as OpenEXR, its name must end in .exr (for a .{} use --preview)",

@@ -7,6 +7,7 @@ use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
 use photonvdb::lab::LabError;
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
+use photonvdb::reference::ReferenceError;
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
 use thiserror::Error;
@@ -32,6 +33,8 @@ pub enum CliError {
     RenameMany { count: usize },
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
     #[error(transparent)]
     Lab(#[from] LabError),
     #[error(

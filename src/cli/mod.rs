@@ -14,6 +14,7 @@ mod error;
 mod inspect;
 mod interrupt;
 mod progress;
+mod reference;
 mod render;
 mod report;
 mod resources;
@@ -38,6 +39,7 @@ const BAD_INPUT: u8 = 2;
 pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -7,6 +7,8 @@
 //! come out as cubic there as they can be: cubes have the least surface, and it is the surface of the strata
 //! that makes the variance of a count.
 
+use std::ops::{Add, Div, Mul, Sub};
+
 /// The most dimensions that strata may have: place, direction and first flight.
 pub const MAX_DIMENSIONS: usize = 5;
 
@@ -15,7 +17,7 @@ pub const MAX_DIMENSIONS: usize = 5;
 pub struct Strata {
     count: u64,
     /// (dimension, slabs), coarsest first; the last entry takes what is left.
-    cuts: Vec<(usize, u64)>,
+    cuts: Vec<(usize, u32)>,
 }
 
 /// The interval of a stratum in one dimension.
@@ -34,26 +36,60 @@ impl Strata {
         let shares = division_counts(count as f64, extents);
         let mut order: Vec<usize> = (0..extents.len()).collect();
         order.sort_by(|&a, &b| shares[a].total_cmp(&shares[b]));
-        let cuts = order.into_iter().map(|d| (d, (shares[d].round() as u64).max(1))).collect();
+        let cuts = order.into_iter().map(|d| (d, (shares[d].round() as u32).max(1))).collect();
         Self { count, cuts }
     }
 
     /// The cell of photon `index` (below the count).
     pub fn cell(&self, index: u64) -> [Interval; MAX_DIMENSIONS] {
+        // 64 bits hold the products of counts below 2^32, and divide many times faster than 128.
+        match u32::try_from(self.count) {
+            Ok(count) => self.cell_of::<u64>(index, u64::from(count)),
+            Err(_) => self.cell_of::<u128>(u128::from(index), u128::from(self.count)),
+        }
+    }
+
+    fn cell_of<N: Whole>(&self, mut index: N, mut left: N) -> [Interval; MAX_DIMENSIONS] {
         let mut cell = [Interval { low: 0.0, high: 1.0 }; MAX_DIMENSIONS];
-        let (mut index, mut left) = (u128::from(index), u128::from(self.count));
+        let one = N::from(1u32);
         let last = self.cuts.len().saturating_sub(1);
         for (level, &(dimension, slabs)) in self.cuts.iter().enumerate() {
-            let slabs = if level == last { left } else { u128::from(slabs).min(left) };
+            let slabs = if level == last { left } else { N::from(slabs).min(left) };
             // The slab whose photons include `index`: slab s begins at photon floor(s left / slabs).
-            let slab = ((index + 1) * slabs - 1) / left;
-            let (first, end) = (slab * left / slabs, (slab + 1) * left / slabs);
-            let share = |photon: u128| photon as f64 / left as f64;
-            cell[dimension] = Interval { low: share(first), high: share(end) };
-            index -= first;
+            let slab = ((index + one) * slabs - one) / left;
+            let (first, end) = (slab * left / slabs, (slab + one) * left / slabs);
+            let per_photon = 1.0 / left.as_f64();
+            let share = |photon: N| photon.as_f64() * per_photon;
+            cell[dimension] = Interval { low: share(first), high: share(end).min(1.0) };
+            index = index - first;
             left = end - first;
         }
         cell
+    }
+}
+
+/// Whole numbers wide enough for the product of two counts.
+trait Whole:
+    Copy
+    + Ord
+    + From<u32>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
+    fn as_f64(self) -> f64;
+}
+
+impl Whole for u64 {
+    fn as_f64(self) -> f64 {
+        self as f64
+    }
+}
+
+impl Whole for u128 {
+    fn as_f64(self) -> f64 {
+        self as f64
     }
 }
 

@@ -9,6 +9,8 @@ pub struct ExtraLayers {
     pub photon_count: bool,
     /// Mean kernel radius of the queries \[m\].
     pub kernel_radius: bool,
+    /// Square of the radiance's standard error, and the number of samples behind it.
+    pub variance: bool,
 }
 
 /// One channel of the file.
@@ -39,6 +41,13 @@ const CHANNELS: [FilmChannel; 16] = [
     FilmChannel { name: "transmittance.B", value: |pixel| pixel.transmittance.z },
 ];
 
+const VARIANCE_CHANNELS: [FilmChannel; 4] = [
+    FilmChannel { name: "variance.R", value: |pixel| pixel.variance.x },
+    FilmChannel { name: "variance.G", value: |pixel| pixel.variance.y },
+    FilmChannel { name: "variance.B", value: |pixel| pixel.variance.z },
+    FilmChannel { name: "sample_count", value: |pixel| pixel.sample_count },
+];
+
 /// The channels of a file, in the alphabetical order that EXR demands.
 pub(super) fn channels(extra: &ExtraLayers) -> Vec<FilmChannel> {
     let mut channels = CHANNELS.to_vec();
@@ -47,6 +56,9 @@ pub(super) fn channels(extra: &ExtraLayers) -> Vec<FilmChannel> {
     }
     if extra.kernel_radius {
         channels.push(FilmChannel { name: "kernel_radius", value: |pixel| pixel.kernel_radius });
+    }
+    if extra.variance {
+        channels.extend(VARIANCE_CHANNELS);
     }
     channels.sort_by_key(|channel| channel.name);
     channels

@@ -64,6 +64,10 @@ pub struct Pixel {
     pub photon_count: f64,
     /// Mean kernel radius of the queries \[m\].
     pub kernel_radius: f64,
+    /// Square of the radiance's standard error, where it is known.
+    pub variance: Rgb,
+    /// Paths behind the pixel, where it is made of independent ones.
+    pub sample_count: f64,
 }
 
 impl Pixel {

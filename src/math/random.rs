@@ -23,6 +23,8 @@ pub enum Stream {
     Guide = 5,
     /// Rays that several photons share.
     Ray = 6,
+    /// Paths of the reference path tracer.
+    Reference = 7,
 }
 
 impl Stream {

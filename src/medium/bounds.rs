@@ -163,18 +163,36 @@ pub struct Face {
     pub area_normal: DVec3,
 }
 
-/// The distances at which a line crosses an axis-aligned box. A component of the direction that is 0 (or
-/// -0) is decided by comparison: 0 times infinity must not arise.
+/// The distances at which a line crosses an axis-aligned box.
+#[inline]
 fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
+    let inverse = direction.recip();
+    if !inverse.is_finite() {
+        return slabs_with_parallels(origin, direction, min, max);
+    }
+    let (a, b) = ((min - origin) * inverse, (max - origin) * inverse);
+    let span = Span::new(a.min(b).max_element(), a.max(b).min_element());
+    (span.end > span.start).then_some(span)
+}
+
+/// The same where the line may be parallel to faces. A component of the direction that is 0 (or -0) is decided by
+/// comparison: 0 times infinity must not arise.
+#[cold]
+fn slabs_with_parallels(
+    origin: DVec3,
+    direction: DVec3,
+    min: DVec3,
+    max: DVec3,
+) -> Option<Span> {
     let mut span = Span::new(f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
-        if direction[axis] == 0.0 {
+        let inverse = 1.0 / direction[axis];
+        if !inverse.is_finite() {
             if origin[axis] < min[axis] || origin[axis] > max[axis] {
                 return None;
             }
             continue;
         }
-        let inverse = 1.0 / direction[axis];
         let (a, b) = ((min[axis] - origin[axis]) * inverse, (max[axis] - origin[axis]) * inverse);
         span = span.intersect(Span::new(a.min(b), a.max(b)))?;
     }

@@ -138,6 +138,12 @@ pub trait Extinction: Sync {
         exp(-self.optical_depth(ray, span))
     }
 
+    /// A random number per channel whose mean is the transmittance over the span: ratio tracking in grids, which looks up a few
+    /// densities instead of crossing every cell; exact in uniform media.
+    fn estimate_transmittance(&self, ray: &Ray, span: Span, _random: &mut Random) -> Rgb {
+        self.transmittance(ray, span)
+    }
+
     /// Probability that a photon of the given power collides within the span: 1 - T, for a chromatic medium
     /// averaged over the channels' shares of the power.
     fn opacity(&self, ray: &Ray, span: Span, power: Rgb) -> f64 {

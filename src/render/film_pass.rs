@@ -218,5 +218,6 @@ fn sum(a: &Pixel, b: &Pixel) -> Pixel {
         transmittance: a.transmittance + b.transmittance,
         photon_count: a.photon_count + b.photon_count,
         kernel_radius: a.kernel_radius + b.kernel_radius,
+        ..*a
     }
 }

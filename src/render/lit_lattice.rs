@@ -15,8 +15,9 @@ const PHOTONS_A_TASK: u64 = 4096;
 /// Most lattices filled at once.
 const MAX_TASKS: u64 = 4;
 
-/// Photons that leave along one ray through a grid: walking it costs as much as what follows of several.
-const PHOTONS_A_RAY: u64 = 8;
+/// Photons that leave along one ray through a grid, which costs as much to walk as a dozen photons to follow, and through a
+/// uniform medium, where only the way to the ray is saved.
+const PHOTONS_A_RAY: [u64; 2] = [16, 4];
 
 /// Emits and traces the photons of one pass into a lattice. Adds to `report`.
 ///
@@ -55,8 +56,10 @@ impl<E: Extinction> Fill<'_, E> {
         let started = Instant::now();
         let medium = &scene.medium;
         // Photons of one place and direction would go the same way: a glowing medium sends each by its own.
-        let shares_rays = !E::IS_UNIFORM && medium.emissivity.is_none();
-        let photons_a_ray = if shares_rays { PHOTONS_A_RAY } else { 1 };
+        let photons_a_ray = match medium.emissivity {
+            Some(_) => 1,
+            None => PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)],
+        };
         let emission = scene_emission(scene, *extinction, photons_a_ray, *seed);
         observer.stage_started(Stage::Trace, emission.count());
         let tasks = (emission.count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);

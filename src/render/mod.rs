@@ -154,5 +154,6 @@ fn scaled(pixel: &Pixel, factor: f64) -> Pixel {
         transmittance: pixel.transmittance * factor,
         photon_count: pixel.photon_count * factor,
         kernel_radius: pixel.kernel_radius * factor,
+        ..*pixel
     }
 }

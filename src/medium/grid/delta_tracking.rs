@@ -47,7 +47,7 @@ impl DensityGrid {
 
     /// Density at a local point of the block a piece lies in.
     #[inline(always)]
-    fn block_density(&self, piece: &Piece, point: [f64; 3]) -> f64 {
+    pub(super) fn block_density(&self, piece: &Piece, point: [f64; 3]) -> f64 {
         let place: [f64; 3] = std::array::from_fn(|axis| point[axis] - piece.lower[axis] as f64);
         match &piece.content {
             Content::Uniform(density) => *density,

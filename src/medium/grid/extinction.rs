@@ -148,6 +148,12 @@ impl Extinction for GridExtinction {
         Rgb::splat((-self.density_scale * depth).exp())
     }
 
+    fn estimate_transmittance(&self, ray: &Ray, span: Span, random: &mut Random) -> Rgb {
+        let Some(placement) = &self.placement else { return Rgb::ONE };
+        let local = placement.local_ray(ray);
+        Rgb::splat(self.grid.estimate_transmittance(&local, span, self.density_scale, random))
+    }
+
     fn sample_flight(&self, ray: &Ray, span: Span, _: Rgb, random: &mut Random) -> Flight {
         flight_to(self.placement.as_ref().and_then(|placement| {
             let local = placement.local_ray(ray);

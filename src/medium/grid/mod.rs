@@ -35,6 +35,7 @@ mod extinction;
 mod half_scale;
 mod index_builder;
 mod place_mask;
+mod ratio_tracking;
 mod slot;
 #[cfg(test)]
 mod test_grids;
