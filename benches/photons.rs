@@ -88,6 +88,6 @@ fn render_scene(bencher: Bencher, name: &str) {
     let overrides =
         Overrides { photons: Some(100_000), resolution: Some([64, 36]), ..Overrides::default() };
     let Ok(scene) = Scene::load_with(&path, &overrides) else { return };
-    let options = RenderOptions { passes: 1 };
+    let options = RenderOptions::passes(1);
     bencher.bench_local(|| render(&scene, &options, &Unobserved).map(|made| made.film.width));
 }

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::load(Path::new("examples/scenes/fog_spot.toml"))?;
     println!("{}", Plan::of(&scene));
 
-    let rendering = render(&scene, &RenderOptions { passes: 1 }, &Unobserved)?;
+    let rendering = render(&scene, &RenderOptions::passes(1), &Unobserved)?;
     let report = &rendering.report;
     println!("{} photons emitted, {} stored", report.emitted_count, report.stored_count);
     println!("power into the fog, per channel: {:.4} W", report.power.emitted);

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let draft =
         Overrides { photons: Some(300_000), resolution: Some([180, 240]), ..Overrides::default() };
     let scene = Scene::load_with(Path::new("examples/scenes/smoke_sun.toml"), &draft)?;
-    let rendering = render(&scene, &RenderOptions { passes: 1 }, &Unobserved)?;
+    let rendering = render(&scene, &RenderOptions::passes(1), &Unobserved)?;
     println!("{} photons stored", rendering.report.stored_count);
     let seconds = rendering.report.seconds;
     println!("traced in {:.1} s, gathered in {:.1} s", seconds.trace, seconds.gather);

@@ -39,7 +39,7 @@
 //!     ..Overrides::default()
 //! };
 //! let scene = Scene::load_with("examples/scenes/fog_spot.toml".as_ref(), &draft)?;
-//! let rendering = render(&scene, &RenderOptions { passes: 1 }, &Unobserved)?;
+//! let rendering = render(&scene, &RenderOptions::passes(1), &Unobserved)?;
 //! let middle = rendering.film.pixels[8 * 16 + 8];
 //! assert!(middle.radiance().min_element() > 0.0);
 //! assert!(middle.alpha() > 0.0 && middle.alpha() < 1.0);

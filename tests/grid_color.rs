@@ -56,7 +56,7 @@ fn one_color_everywhere_is_an_albedo() {
     let image = |medium| {
         let mut scene = scene(medium, sun(), 20_000);
         scene.lights.push(white_sky());
-        let rendering = render(&scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap();
+        let rendering = render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap();
         rendering.film.pixels
     };
     let colored = Medium {

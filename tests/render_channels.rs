@@ -40,7 +40,7 @@ fn quarters(film: &Film) -> [f64; 12] {
 
 fn rendered(medium: Medium) -> [Runs; 12] {
     over_seeds(&mut lit(medium), |scene| {
-        quarters(&render(scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film)
+        quarters(&render(scene, &RenderOptions::passes(1), &Unobserved).unwrap().film)
     })
 }
 

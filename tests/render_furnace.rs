@@ -105,7 +105,7 @@ fn pixels_see_one() {
         for (photons_only, bias) in [(true, CLUSTER_BIAS), (false, BOUNDARY_BIAS)] {
             scene.render.photons_only = photons_only;
             let [mean] = over_seeds(&mut scene, |scene| {
-                let film = render(scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film;
+                let film = render(scene, &RenderOptions::passes(1), &Unobserved).unwrap().film;
                 let count = film.pixels.len() as f64;
                 [film.pixels.iter().map(|pixel| pixel.radiance().x).sum::<f64>() / count]
             });

@@ -11,7 +11,7 @@ use transport_support::*;
 fn assert_like_reference(name: &str) {
     let path = |ending: &str| tests().join("scenes").join(format!("{name}.{ending}"));
     let scene = Scene::load(&path("toml")).unwrap();
-    let rendering = render(&scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap();
+    let rendering = render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap();
     let reference = read_rgb(&path("exr")).unwrap();
     let error = compare(&RgbImage::from(&rendering.film), &reference).unwrap();
     println!("{name}: {error:?} {:?}", rendering.report.seconds);

@@ -63,7 +63,7 @@ impl Place {
         let camera = Camera::look_at(position, middle, DVec3::Y, 0.66, [24, 24]).unwrap();
         let base = scene(medium, white_sky(), 20_000);
         let scene = Scene { camera, lights, ..base };
-        render(&scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film
+        render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap().film
     }
 
     fn medium(self, kind: usize) -> Medium {

@@ -72,7 +72,7 @@ fn everything(scene: &Scene) -> (Vec<[u32; 11]>, String, Vec<u64>, Vec<u64>) {
         let place = DVec3::new(-0.5 + 0.02 * f64::from(step), 0.1, 0.2);
         stored.extend(reader.fluence(place).value.to_array().map(f64::to_bits));
     }
-    let rendering = render(scene, &RenderOptions { passes: 2 }, &Unobserved).unwrap();
+    let rendering = render(scene, &RenderOptions::passes(2), &Unobserved).unwrap();
     let photons = traced.photons.iter().map(photon_bits).collect();
     (photons, format!("{:?}", traced.balance), stored, film_bits(&rendering.film))
 }
@@ -108,7 +108,7 @@ fn other_seeds_and_passes_differ() {
             scene.photons.seed = 1;
             let second = everything(&scene);
             assert!(first.0 != second.0 && first.3 != second.3, "{kind:?}");
-            let one = render(&scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap();
+            let one = render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap();
             assert!(
                 film_bits(&one.film) != second.3,
                 "{kind:?}: the second pass repeats the first"

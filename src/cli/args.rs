@@ -6,12 +6,13 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExtraLayers;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
+use photonvdb::render::RenderOptions;
 use photonvdb::scene::Overrides;
 
 use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
-use super::count::{parse_count, parse_resolution};
+use super::count::{parse_count, parse_positive, parse_resolution};
 use super::reference::args::ReferenceArguments;
 
 const EXAMPLES: &str = "\
@@ -106,9 +107,18 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub photons: Option<u64>,
 
-    /// Independent passes; the image is their mean
-    #[arg(long, value_name = "P", default_value = "1", value_parser = parse_passes)]
-    pub passes: u32,
+    /// Independent passes; the image is their mean [default: 1, or as many as the limits below allow]
+    #[arg(long, value_name = "P", value_parser = parse_passes)]
+    pub passes: Option<u32>,
+
+    /// Relative error to reach, like 0.05: passes go on until the image's estimated noise and bias are below, root mean square over
+    /// its mean
+    #[arg(long, value_name = "REL", value_parser = parse_positive)]
+    pub target_error: Option<f64>,
+
+    /// Wall-clock time to stay within; the first pass is always made
+    #[arg(long, value_name = "SECONDS", value_parser = parse_positive)]
+    pub time_budget: Option<f64>,
 
     /// Photons of one estimate: more are smoother, fewer are sharper [default: estimate.k of the scene]
     #[arg(long, value_name = "K", value_parser = parse_count)]
@@ -205,8 +215,10 @@ impl VolumeArguments {
 pub enum ExtraLayer {
     /// Mean number of photons found a query
     PhotonCount,
-    /// Mean kernel radius of the queries
+    /// Mean kernel radius of the queries, or edge of the lattice's cells
     KernelRadius,
+    /// Square of the radiance's standard error, from how passes differ, and the number of rays
+    Variance,
 }
 
 /// `photonvdb inspect`
@@ -307,12 +319,19 @@ impl RenderArguments {
         }
     }
 
+    /// When the render ends.
+    pub fn options(&self) -> RenderOptions {
+        let limited = self.target_error.is_some() || self.time_budget.is_some();
+        let passes = self.passes.unwrap_or(if limited { u32::MAX } else { 1 });
+        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget }
+    }
+
     /// The layers asked for beyond the usual.
     pub fn extra_layers(&self) -> ExtraLayers {
         ExtraLayers {
             photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
             kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
-            variance: false,
+            variance: self.layers.contains(&ExtraLayer::Variance),
         }
     }
 }

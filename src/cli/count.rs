@@ -17,6 +17,13 @@ fn parse_exponent(digits: &str) -> Option<u64> {
     ((0.0..=EXACT_LIMIT).contains(&value) && value.fract() == 0.0).then_some(value as u64)
 }
 
+/// Parses a finite number above 0.
+pub fn parse_positive(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    let positive = value.filter(|value| *value > 0.0 && value.is_finite());
+    positive.ok_or_else(|| format!("`{text}` is not a number above 0"))
+}
+
 /// Parses `640x360`.
 pub fn parse_resolution(text: &str) -> Result<[u64; 2], String> {
     let sides = text.split_once(['x', 'X']);

@@ -5,22 +5,25 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{PoisonError, RwLock};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use photonvdb::render::{Observer, Stage};
+use photonvdb::render::{ErrorEstimate, Observer, RenderOptions, Stage};
 
 /// Shows the stages of a render and passes Ctrl-C on to it.
 pub struct Progress {
     bar: RwLock<ProgressBar>,
     pass: AtomicU32,
     passes: u32,
+    /// What the passes so far say of the error.
+    error: RwLock<Option<ErrorEstimate>>,
     quiet: bool,
     interrupted: Arc<AtomicBool>,
 }
 
 impl Progress {
-    /// For a render of `passes` passes that ends once `interrupted` is true.
-    pub fn new(passes: u32, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+    /// For a render that ends by its options, or once `interrupted` is true.
+    pub fn new(options: &RenderOptions, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = RwLock::new(ProgressBar::hidden());
-        Self { bar, pass: AtomicU32::new(0), passes, quiet, interrupted }
+        let (pass, passes) = (AtomicU32::new(0), options.passes);
+        Self { bar, pass, passes, error: RwLock::new(None), quiet, interrupted }
     }
 
     fn start_bar(&self, stage: Stage, total: u64) -> ProgressBar {
@@ -28,8 +31,13 @@ impl Progress {
         let target =
             if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let pass = self.pass.load(Ordering::Relaxed);
-        let prefix =
-            if self.passes > 1 { format!("pass {pass}/{} ", self.passes) } else { String::new() };
+        let error = *self.error.read().unwrap_or_else(PoisonError::into_inner);
+        let error = error.map_or(String::new(), |e| format!("error {:.1} % ", 100.0 * e.total()));
+        let prefix = match self.passes {
+            1 => String::new(),
+            u32::MAX => format!("pass {pass} {error}"),
+            passes => format!("pass {pass}/{passes} {error}"),
+        };
         let name = match stage {
             Stage::Trace => "trace",
             Stage::Build => "build",
@@ -59,6 +67,10 @@ impl Observer for Progress {
 
     fn stage_finished(&self, _: Stage) {
         self.bar.read().unwrap_or_else(PoisonError::into_inner).finish_and_clear();
+    }
+
+    fn pass_finished(&self, _: u32, error: Option<ErrorEstimate>) {
+        *self.error.write().unwrap_or_else(PoisonError::into_inner) = error;
     }
 
     fn cancelled(&self) -> bool {

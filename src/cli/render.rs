@@ -6,7 +6,7 @@ use std::time::Instant;
 use photonvdb::film::{
     FilmError, RgbImage, check_writable, compare, read_rgb, write_exr, write_preview_png,
 };
-use photonvdb::render::{RenderOptions, Rendering, render};
+use photonvdb::render::{Observer, Rendering, render};
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
@@ -34,15 +34,14 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let load = started.elapsed().as_secs_f64();
 
     let pool = thread_pool(arguments.threads)?;
-    let settings =
-        Settings::of(&arguments.scene, &scene, arguments.passes, pool.current_num_threads());
-    let progress = Progress::new(arguments.passes, arguments.quiet, interrupted);
-    let options = RenderOptions { passes: arguments.passes };
+    let options = arguments.options();
+    let settings = Settings::of(&arguments.scene, &scene, &options, pool.current_num_threads());
+    let progress = Progress::new(&options, arguments.quiet, interrupted);
     let rendering = pool.install(|| render(&scene, &options, &progress))?;
 
     let made = &rendering.report;
-    if made.passes_done < arguments.passes {
-        summary.interrupted(made.passes_done, arguments.passes);
+    if progress.cancelled() {
+        summary.interrupted(made.passes_done);
     }
     let write_started = Instant::now();
     pool.install(|| write_images(arguments, &settings, &rendering))?;
@@ -63,7 +62,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         },
         cpu_seconds: cpu_seconds(),
         peak_memory_bytes: peak_memory_bytes(),
-        estimated_relative_error: None,
+        estimated_relative_error: made.error.map(|error| error.total()),
+        estimated_error: made.error.map(Into::into),
         comparison: None,
     };
     if let Some((path, reference)) = reference {
@@ -76,6 +76,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     }
     summary.times(&report.seconds, &report.photons);
     summary.truncated(&report.power, scene.photons.max_order);
+    made.error.iter().for_each(|error| summary.error(made.passes_done, error));
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
     summary.written(arguments);
     Ok(())

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use photonvdb::film::ImageError;
-use photonvdb::render::RenderReport;
+use photonvdb::render::{ErrorEstimate, RenderReport};
 use photonvdb::scene::Plan;
 use serde::Serialize;
 
@@ -30,8 +30,10 @@ pub struct Report {
     pub cpu_seconds: Option<f64>,
     /// The most memory ever held \[bytes\].
     pub peak_memory_bytes: Option<u64>,
-    /// Not estimated without a reference.
+    /// Of the image, from how its passes differ: root mean square over the mean. Two passes at least.
     pub estimated_relative_error: Option<f64>,
+    /// What it is made of.
+    pub estimated_error: Option<EstimatedError>,
     /// Against the reference, if one was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
@@ -63,6 +65,19 @@ pub struct Seconds {
     pub gather: f64,
     pub write: f64,
     pub total: f64,
+}
+
+/// What the passes say of the image's error, as shares of its mean.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EstimatedError {
+    pub noise: f64,
+    pub bias: f64,
+}
+
+impl From<ErrorEstimate> for EstimatedError {
+    fn from(error: ErrorEstimate) -> Self {
+        Self { noise: error.noise, bias: error.bias }
+    }
 }
 
 /// How far the image is from a reference.

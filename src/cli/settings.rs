@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use photonvdb::film::RenderMetadata;
+use photonvdb::render::RenderOptions;
 use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use serde::Serialize;
 use serde_json::Value;
@@ -14,8 +15,12 @@ pub struct Settings {
     pub scene: String,
     /// Of all values and files of the scene, in hexadecimal.
     pub scene_hash: String,
-    /// Passes asked for.
-    pub passes: u32,
+    /// Passes asked for, if so many were.
+    pub passes: Option<u32>,
+    /// Relative error asked for.
+    pub target_error: Option<f64>,
+    /// Seconds allowed.
+    pub time_budget: Option<f64>,
     /// Threads used.
     pub threads: usize,
     /// Width and height \[pixels\].
@@ -30,12 +35,14 @@ pub struct Settings {
 
 impl Settings {
     /// The settings of a scene as it is rendered.
-    pub fn of(path: &Path, scene: &Scene, passes: u32, threads: usize) -> Self {
+    pub fn of(path: &Path, scene: &Scene, options: &RenderOptions, threads: usize) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str());
         Self {
             scene: name.to_string_lossy().into_owned(),
             scene_hash: format!("{:016x}", scene.hash),
-            passes,
+            passes: (options.passes != u32::MAX).then_some(options.passes),
+            target_error: options.target_error,
+            time_budget: options.seconds,
             threads,
             resolution: [scene.camera.width, scene.camera.height],
             photons: scene.photons,

@@ -1,5 +1,6 @@
 //! What a render says to people, on stderr.
 
+use photonvdb::render::ErrorEstimate;
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
@@ -20,9 +21,20 @@ impl Summary {
         self.line(&plan.to_string());
     }
 
-    /// That fewer passes were made than asked for.
-    pub fn interrupted(self, passes_done: u32, passes: u32) {
-        self.line(&format!("ended after pass {passes_done} of {passes}"));
+    /// That the render was asked to end.
+    pub fn interrupted(self, passes_done: u32) {
+        self.line(&format!("ended after pass {passes_done}"));
+    }
+
+    /// How far the image is from the truth, by its own account.
+    pub fn error(self, passes_done: u32, error: &ErrorEstimate) {
+        let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+        self.line(&format!(
+            "{passes_done} passes: estimated error {} of the mean (noise {}, bias {})",
+            percent(error.total()),
+            percent(error.noise),
+            percent(error.bias)
+        ));
     }
 
     /// Where the time went.

@@ -139,6 +139,16 @@ impl<'a> Emission<'a> {
         Self { seed, count: first * photons_per_ray, photons_per_ray, lights }
     }
 
+    /// Makes the photons those of another seed, everything else the same.
+    pub fn reseed(&mut self, seed: u64) {
+        self.seed = seed;
+        for (index, light) in self.lights.iter_mut().enumerate() {
+            if let PrimarySampler::Sobol(sobol) = &mut light.sampler {
+                *sobol = Sobol::new(seed, index as u64);
+            }
+        }
+    }
+
     /// Photons of the pass: the count asked for, or 0 where no light reaches the bounds.
     pub fn count(&self) -> u64 {
         self.count

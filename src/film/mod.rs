@@ -5,6 +5,7 @@
 //! the render, [`write_preview_png`] makes a tone-mapped picture for a quick look, [`read_rgb`] reads
 //! any ordinary EXR back, and [`compare`] measures two images against each other.
 
+mod average;
 mod beside;
 mod compare;
 mod error;

@@ -20,7 +20,7 @@ const PARTS: usize = 8;
 
 impl LatticeShape {
     /// The lattice of a medium, its longest edge divided into `resolution` cells, the others into cells about as long;
-    /// at least 2 along each. `None` for infinite media.
+    /// an even number along each, and at least 4. `None` for infinite media.
     pub fn new(bounds: &Bounds, resolution: usize) -> Option<Self> {
         let (filled, center_radius) = match *bounds {
             Bounds::Sphere { center, radius } => {
@@ -33,8 +33,8 @@ impl LatticeShape {
         let lengths = filled.edges().map(DVec3::length);
         let longest = lengths.into_iter().fold(0.0, f64::max);
         let counts = lengths.map(|length| {
-            let cells = (resolution as f64 * length / longest).round();
-            (cells as usize).max(2)
+            let pairs = (0.5 * resolution as f64 * length / longest).round();
+            2 * (pairs as usize).max(2)
         });
         let [a, b, c] = std::array::from_fn(|axis| filled.edges()[axis] / counts[axis] as f64);
         let cell = DMat3::from_cols(a, b, c);
@@ -45,6 +45,17 @@ impl LatticeShape {
         let cell_volume = cell.determinant().abs();
         let cell_edge = longest / resolution as f64;
         Some(Self { to_cells, counts, cell_volume, cell_edge, ball })
+    }
+
+    /// The lattice with cells twice as long, half as many.
+    pub fn coarser(&self) -> Self {
+        Self {
+            to_cells: DAffine3::from_scale(DVec3::splat(0.5)) * self.to_cells,
+            counts: self.counts.map(|count| count / 2),
+            cell_volume: 8.0 * self.cell_volume,
+            cell_edge: 2.0 * self.cell_edge,
+            ball: self.ball.map(|(center, radius)| (0.5 * center, 0.5 * radius)),
+        }
     }
 
     /// Cells along each axis.

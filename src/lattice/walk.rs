@@ -58,3 +58,53 @@ pub fn walk_cells(
         left[axis] -= 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Random, Stream, uniform};
+    use crate::medium::Bounds;
+
+    fn place(random: &mut Random) -> DVec3 {
+        DVec3::from_array(std::array::from_fn(|_| uniform(random)))
+    }
+
+    /// The pieces join to the span, and each lies in its cell: also along faces and edges, through corners and with -0.
+    #[test]
+    fn pieces_join_and_lie_in_their_cells() {
+        let bounds =
+            Bounds::Box { min: DVec3::new(-1.0, 2.0, 0.0), max: DVec3::new(1.0, 3.5, 1.0) };
+        let shape = LatticeShape::new(&bounds, 10).unwrap();
+        let [width, height, _] = shape.counts();
+        let mut random = Stream::Experiment.random(3, 1);
+        for case in 0..4000 {
+            let (mut a, b) = (place(&mut random), place(&mut random));
+            let mut direction = b - a;
+            if case % 3 == 0 {
+                // On faces and corners of cells.
+                a = (a * 10.0).round() * 0.1;
+            }
+            if case % 4 == 0 {
+                direction[case % 3] = [0.0, -0.0, 1e-300][case / 4 % 3];
+                direction[(case + 1) % 3] = if case % 8 == 0 { 0.0 } else { 1.0 };
+            }
+            let Some(direction) = direction.try_normalize() else { continue };
+            let ray =
+                Ray::new(DVec3::new(-1.0, 2.0, 0.0) + a * DVec3::new(2.0, 1.5, 1.0), direction);
+            let Some(span) = bounds.intersect(&ray) else { continue };
+            let mut end = span.start;
+            walk_cells(&shape, &ray, span, |cell, enters, leaves| {
+                assert_eq!(enters, end);
+                assert!(leaves >= enters);
+                end = leaves;
+                let middle = shape.point(ray.at(0.5 * (enters + leaves)));
+                let corner = [cell % width, cell / width % height, cell / width / height];
+                for axis in 0..3 {
+                    let within = middle[axis] - corner[axis] as f64;
+                    assert!((-1e-9..=1.0 + 1e-9).contains(&within), "{ray:?} {middle} {corner:?}");
+                }
+            });
+            assert_eq!(end, span.end, "{ray:?}");
+        }
+    }
+}

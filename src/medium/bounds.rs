@@ -178,12 +178,7 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
 /// The same where the line may be parallel to faces. A component of the direction that is 0 (or -0) is decided by
 /// comparison: 0 times infinity must not arise.
 #[cold]
-fn slabs_with_parallels(
-    origin: DVec3,
-    direction: DVec3,
-    min: DVec3,
-    max: DVec3,
-) -> Option<Span> {
+fn slabs_with_parallels(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
     let mut span = Span::new(f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let inverse = 1.0 / direction[axis];

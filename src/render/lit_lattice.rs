@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::emission::Emission;
 use crate::lattice::{CellLight, Cells, Deposit, LatticeShape, LightLattice};
 use crate::medium::Extinction;
 use crate::render::lit_medium::{scene_emission, trace_settings};
@@ -19,24 +20,40 @@ const MAX_TASKS: u64 = 4;
 /// uniform medium, where only the way to the ray is saved.
 const PHOTONS_A_RAY: [u64; 2] = [16, 4];
 
-/// Emits and traces the photons of one pass into a lattice. Adds to `report`.
+/// Fewer photons than this do not share rays: their number is exact.
+const FEWEST_TO_SHARE: u64 = 4096;
+
+/// The photons of a pass.
+pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E, photons: u64) -> Emission<'a> {
+    // Photons of one place and direction would go the same way: a glowing medium sends each by its own.
+    let photons_a_ray = match scene.medium.emissivity {
+        None if photons >= FEWEST_TO_SHARE => {
+            let test = std::env::var("PV_RAY").ok().and_then(|t| t.parse().ok());
+            test.unwrap_or(PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)])
+        }
+        _ => 1,
+    };
+    scene_emission(scene, extinction, photons, photons_a_ray, scene.photons.seed)
+}
+
+/// Traces the photons of one pass into a lattice. Adds to `report`.
 ///
 /// # Errors
 /// An infinite medium.
 pub fn trace<E: Extinction>(
     scene: &Scene,
     extinction: &E,
-    seed: u64,
+    emission: &Emission,
+    resolution: usize,
     observer: &dyn Observer,
     report: &mut RenderReport,
 ) -> Result<LightLattice, RenderError> {
-    let resolution = scene.render.lattice.unwrap_or_else(|| resolution(scene.photons.count));
     let bounds = &scene.medium.bounds;
     let shape = LatticeShape::new(bounds, resolution).ok_or(RenderError::InfiniteMedium)?;
-    let mut fill = Fill { scene, extinction, shape: &shape, seed, observer, report };
+    let mut fill = Fill { scene, extinction, emission, shape: &shape, observer, report };
     Ok(match scene.is_grey() && !E::IS_CHROMATIC {
-        true => LightLattice::Grey(fill.cells()),
-        false => LightLattice::Colored(fill.cells()),
+        true => LightLattice::Grey(fill.levels()),
+        false => LightLattice::Colored(fill.levels()),
     })
 }
 
@@ -44,23 +61,17 @@ pub fn trace<E: Extinction>(
 struct Fill<'a, E> {
     scene: &'a Scene,
     extinction: &'a E,
+    emission: &'a Emission<'a>,
     shape: &'a LatticeShape,
-    seed: u64,
     observer: &'a dyn Observer,
     report: &'a mut RenderReport,
 }
 
 impl<E: Extinction> Fill<'_, E> {
-    fn cells<L: CellLight>(&mut self) -> Cells<L> {
-        let Self { scene, extinction, shape, seed, observer, report } = self;
+    fn levels<L: CellLight>(&mut self) -> [Cells<L>; 2] {
+        let Self { scene, extinction, emission, shape, observer, report } = self;
         let started = Instant::now();
         let medium = &scene.medium;
-        // Photons of one place and direction would go the same way: a glowing medium sends each by its own.
-        let photons_a_ray = match medium.emissivity {
-            Some(_) => 1,
-            None => PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)],
-        };
-        let emission = scene_emission(scene, *extinction, photons_a_ray, *seed);
         observer.stage_started(Stage::Trace, emission.count());
         let tasks = (emission.count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);
         let camera = scene.camera.position();
@@ -69,7 +80,7 @@ impl<E: Extinction> Fill<'_, E> {
         let settings = trace_settings(scene);
         let advanced = |steps| observer.advanced(steps);
         let (deposits, balance) =
-            trace_into(&emission, medium, *extinction, settings, deposits, advanced);
+            trace_into(emission, medium, *extinction, settings, deposits, advanced);
         observer.stage_finished(Stage::Trace);
         report.seconds.trace += started.elapsed().as_secs_f64();
         report.emitted_count += emission.count();
@@ -77,15 +88,21 @@ impl<E: Extinction> Fill<'_, E> {
 
         let started = Instant::now();
         let sums = deposits.into_iter().map(Deposit::into_sums).collect();
-        let cells = Cells::from_sums(shape, sums);
+        let fine = Cells::from_sums(shape, sums);
+        let coarse = fine.coarser();
         report.seconds.build += started.elapsed().as_secs_f64();
-        cells
+        [fine, coarse]
     }
 }
 
-/// Cells along the longest side for a number of photons: interpolation errs as the square of a cell, noise
-/// as its inverse root, so that their sum is least where cells shrink with the fifth root of the photons.
-fn resolution(photons: u64) -> usize {
-    let cells = 64.0 * (photons as f64 / 1.5e5).powf(0.2);
+/// The finest lattice: 150 million cells.
+pub const MAX_RESOLUTION: usize = 512;
+
+/// Cells along the longest side for a number of photons in all: interpolation errs as the square of a cell, noise
+/// as its inverse root, so that their sum is least where cells shrink with the fifth root of the photons. Light varies more
+/// in a grid than in a uniform medium.
+pub fn resolution<E: Extinction>(photons: u64) -> usize {
+    let cells = if E::IS_UNIFORM { 36.0 } else { 56.0 };
+    let cells = cells * (photons as f64 / 1.5e5).powf(0.2);
     (cells as usize).clamp(8, 192)
 }

@@ -41,7 +41,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
     ) -> Result<Self, RenderError> {
         let medium = &scene.medium;
         let started = Instant::now();
-        let emission = scene_emission(scene, extinction, 1, seed);
+        let emission = scene_emission(scene, extinction, scene.photons.count, 1, seed);
         let settings = trace_settings(scene);
         let lit_from = scene.lights.iter().find_map(|light| light.position());
         let frame = MapFrame::of(medium, lit_from);
@@ -98,6 +98,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
 pub(super) fn scene_emission<'a, E: Extinction>(
     scene: &'a Scene,
     extinction: &E,
+    photons: u64,
     photons_per_ray: u64,
     seed: u64,
 ) -> Emission<'a> {
@@ -111,7 +112,7 @@ pub(super) fn scene_emission<'a, E: Extinction>(
         },
         mean_free_path(extinction, &medium.bounds),
         scene.photons.emission,
-        scene.photons.count,
+        photons,
         photons_per_ray,
         seed,
     )

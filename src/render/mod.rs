@@ -5,11 +5,13 @@
 
 mod distances;
 mod emitted_light;
+mod error_estimate;
 mod film_pass;
 mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
 mod observer;
+mod passes;
 mod photon_query;
 mod pixel_peak;
 mod pixel_samples;
@@ -19,6 +21,7 @@ mod scattered_light;
 mod shadow;
 mod single_scatter;
 
+pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
@@ -26,20 +29,33 @@ pub use reader::{RayRadiance, Reader};
 pub use report::{RenderReport, StageSeconds};
 pub use scattered_light::Gather;
 
-use std::time::Instant;
-
-use crate::film::{Film, Pixel};
+use crate::film::Film;
 use crate::map::MapError;
-use crate::math::Stream;
-use crate::medium::{Bounds, Extinction, MediumExtinction};
+use crate::medium::{Bounds, MediumExtinction};
 use crate::scene::Scene;
-use scattered_light::ScatteredLight;
+use passes::Passes;
 
-/// How a scene is rendered.
+/// When a render ends: whichever comes first.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderOptions {
     /// Independent passes, at least 1; the film is their mean.
     pub passes: u32,
+    /// Estimated error of the image, root mean square over its mean.
+    pub target_error: Option<f64>,
+    /// Wall-clock time \[s\]; the first pass is always made.
+    pub seconds: Option<f64>,
+}
+
+impl RenderOptions {
+    /// So many passes, and no other limit.
+    pub fn passes(passes: u32) -> Self {
+        Self { passes: passes.max(1), target_error: None, seconds: None }
+    }
+
+    /// Whether something else than the number of passes ends the render: then passes are small.
+    pub fn has_limit(&self) -> bool {
+        self.target_error.is_some() || self.seconds.is_some()
+    }
 }
 
 /// What a render gives.
@@ -85,75 +101,10 @@ pub fn render(
         return Err(RenderError::InfiniteMedium);
     }
     match &scene.medium.extinction {
-        MediumExtinction::Uniform(uniform) => render_passes(scene, uniform, options, observer),
+        MediumExtinction::Uniform(uniform) => Passes::new(scene, uniform, options, observer).run(),
         MediumExtinction::Chromatic(chromatic) => {
-            render_passes(scene, chromatic, options, observer)
+            Passes::new(scene, chromatic, options, observer).run()
         }
-        MediumExtinction::Grid(grid) => render_passes(scene, &**grid, options, observer),
-    }
-}
-
-fn render_passes<E: Extinction>(
-    scene: &Scene,
-    extinction: &E,
-    options: &RenderOptions,
-    observer: &dyn Observer,
-) -> Result<Rendering, RenderError> {
-    let mut film = Film::new(scene.camera.width, scene.camera.height);
-    let mut report = RenderReport::default();
-    let gather = scene.render.gather.unwrap_or(Gather::Lattice);
-    for pass in 0..options.passes.max(1) {
-        let seed = pass_seed(scene.photons.seed, pass);
-        match gather {
-            Gather::Knn => {
-                let lit = LitMedium::prepare(scene, extinction, seed, observer, &mut report)?;
-                add_pass(&mut film, scene, || lit.reader(), pass, observer, &mut report);
-            }
-            Gather::Lattice => {
-                let lattice = lit_lattice::trace(scene, extinction, seed, observer, &mut report)?;
-                let reader = || Reader::new(scene, extinction, &lattice);
-                add_pass(&mut film, scene, reader, pass, observer, &mut report);
-            }
-        }
-        report.passes_done += 1;
-        if observer.cancelled() {
-            break;
-        }
-    }
-    let share = 1.0 / f64::from(report.passes_done);
-    film.pixels.iter_mut().for_each(|pixel| *pixel = scaled(pixel, share));
-    Ok(Rendering { film, report })
-}
-
-/// Gathers a pass, timed and observed.
-fn add_pass<'a, E: Extinction + 'a, S: ScatteredLight>(
-    film: &mut Film,
-    scene: &'a Scene,
-    reader: impl Fn() -> Reader<'a, E, S> + Sync,
-    pass: u32,
-    observer: &dyn Observer,
-    report: &mut RenderReport,
-) {
-    let started = Instant::now();
-    observer.stage_started(Stage::Gather, film.pixels.len() as u64);
-    film_pass::add_pass(film, scene, reader, pass, observer);
-    observer.stage_finished(Stage::Gather);
-    report.seconds.gather += started.elapsed().as_secs_f64();
-}
-
-/// The seed of a pass: the scene's own for the first, so that one pass is the render without passes.
-fn pass_seed(seed: u64, pass: u32) -> u64 {
-    if pass == 0 { seed } else { Stream::Scramble.hash(seed, u64::from(pass)) }
-}
-
-fn scaled(pixel: &Pixel, factor: f64) -> Pixel {
-    Pixel {
-        single_scatter: pixel.single_scatter * factor,
-        multiple_scatter: pixel.multiple_scatter * factor,
-        emission: pixel.emission * factor,
-        transmittance: pixel.transmittance * factor,
-        photon_count: pixel.photon_count * factor,
-        kernel_radius: pixel.kernel_radius * factor,
-        ..*pixel
+        MediumExtinction::Grid(grid) => Passes::new(scene, &**grid, options, observer).run(),
     }
 }

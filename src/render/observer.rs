@@ -1,5 +1,7 @@
 //! How a render tells of its progress, and how it is asked to stop.
 
+use crate::render::ErrorEstimate;
+
 /// A stage of one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
@@ -21,6 +23,9 @@ pub trait Observer: Sync {
 
     /// The stage is complete.
     fn stage_finished(&self, stage: Stage);
+
+    /// A pass is complete: the mean of `passes` has that error.
+    fn pass_finished(&self, _passes: u32, _error: Option<ErrorEstimate>) {}
 
     /// Whether to end after the pass in flight.
     fn cancelled(&self) -> bool;

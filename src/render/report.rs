@@ -1,5 +1,6 @@
 //! Figures of a render.
 
+use crate::render::ErrorEstimate;
 use crate::trace::PowerBalance;
 
 /// Figures of a render, summed over its passes.
@@ -15,8 +16,10 @@ pub struct RenderReport {
     pub power: PowerBalance,
     /// Time of each stage \[s\].
     pub seconds: StageSeconds,
-    /// Passes completed.
+    /// Passes that the image is the mean of.
     pub passes_done: u32,
+    /// What the passes say of the image's error; `None` from fewer than two.
+    pub error: Option<ErrorEstimate>,
 }
 
 /// Time of each stage \[s\].

@@ -39,6 +39,7 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::math::Rgb;
 use crate::medium::{Medium, MediumExtinction};
+use crate::render::Gather;
 use error::Problem;
 use volume::VolumeRules;
 
@@ -95,6 +96,12 @@ impl Scene {
             && medium.emissivity.is_none()
             && !matches!(medium.extinction, MediumExtinction::Chromatic(_))
             && self.lights.iter().all(|light| light.color().is_some_and(grey))
+    }
+
+    /// How light scattered twice or more is gathered: as the scene says, or else as suits it best.
+    pub fn gather(&self) -> Gather {
+        let default = if self.render.photons_only { Gather::Knn } else { Gather::Lattice };
+        self.render.gather.unwrap_or(default)
     }
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {

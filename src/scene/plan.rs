@@ -11,6 +11,7 @@ use super::grid_use::{GridRole, GridUse};
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
 use crate::medium::{MediumExtinction, Phase};
+use crate::render::Gather;
 
 /// What a scene needs; printed before a render and part of its report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +32,8 @@ pub struct Plan {
     pub photons: u64,
     /// How they are sampled, as scene files spell it.
     pub emission: &'static str,
+    /// How light scattered twice or more is gathered from them.
+    pub gather: Gather,
     /// Photons of one estimate.
     pub k: usize,
     /// Numerator of the estimate, as scene files spell it.
@@ -71,6 +74,7 @@ impl Plan {
             majorants: is_grid,
             photons: scene.photons.count,
             emission: emission_word(scene.photons.emission),
+            gather: scene.gather(),
             k: scene.estimate.k,
             divisor: scene.estimate.divisor.name(),
             expected_stored,
@@ -99,15 +103,17 @@ impl fmt::Display for Plan {
             let megabytes = grid.memory_bytes.div_ceil(1_000_000);
             writeln!(f, "{} from grid {:?}, {megabytes} MB", grid.role.name(), grid.name)?;
         }
-        write!(
-            f,
-            "{} photons a pass ({}), k = {} (divisor {}); about {} stored, {} MB",
-            self.photons,
-            self.emission,
-            self.k,
-            self.divisor,
-            self.expected_stored,
-            self.photon_memory_bytes.div_ceil(1_000_000),
-        )
+        write!(f, "{} photons a pass ({}), ", self.photons, self.emission)?;
+        match self.gather {
+            Gather::Lattice => write!(f, "their flights gathered in a lattice"),
+            Gather::Knn => write!(
+                f,
+                "k = {} (divisor {}); about {} stored, {} MB",
+                self.k,
+                self.divisor,
+                self.expected_stored,
+                self.photon_memory_bytes.div_ceil(1_000_000),
+            ),
+        }
     }
 }

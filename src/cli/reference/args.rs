@@ -7,7 +7,7 @@ use photonvdb::reference::Limits;
 use photonvdb::scene::Overrides;
 
 use crate::cli::args::{VolumeArguments, parse_exr_name};
-use crate::cli::count::{parse_count, parse_resolution};
+use crate::cli::count::{parse_count, parse_positive, parse_resolution};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -103,10 +103,4 @@ fn parse_samples(text: &str) -> Result<u64, String> {
         1 => Err("one path a pixel tells nothing of its variance; take 2 or more".into()),
         count => Ok(count),
     }
-}
-
-fn parse_positive(text: &str) -> Result<f64, String> {
-    let value: Option<f64> = text.parse().ok();
-    let positive = value.filter(|value| *value > 0.0 && value.is_finite());
-    positive.ok_or_else(|| format!("`{text}` is not a number above 0"))
 }

@@ -1,0 +1,204 @@
+//! The passes of a render: independent, averaged, and as many as the limits ask for.
+
+use std::time::Instant;
+
+use crate::emission::Emission;
+use crate::film::Film;
+use crate::math::Stream;
+use crate::medium::Extinction;
+use crate::render::error_estimate::BiasProbes;
+use crate::render::film_pass::{FilmPass, PassFilm};
+use crate::render::scattered_light::ScatteredLight;
+use crate::render::{
+    Gather, LitMedium, Observer, Reader, RenderError, RenderOptions, RenderReport, Rendering,
+    Stage, lit_lattice,
+};
+use crate::scene::Scene;
+
+/// Photons a pixel and pass, where the image is made to a limit: what makes noise of photons and of rays about equal.
+const PHOTONS_A_PIXEL: u64 = 2;
+
+/// The fewest and the most photons of such a pass.
+const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
+
+/// Passes from which the error is believed in, and in which a lattice may still turn out too coarse.
+const FEWEST_FOR_ERROR: u32 = 3;
+
+/// The share of the error asked for that may be bias.
+const BIAS_SHARE: f64 = 0.6;
+
+/// A render under way.
+pub struct Passes<'a, E> {
+    scene: &'a Scene,
+    extinction: &'a E,
+    options: &'a RenderOptions,
+    observer: &'a dyn Observer,
+    started: Instant,
+    strategy: Strategy<'a>,
+    samples_per_pixel: usize,
+    /// Passes begun, with those that a finer lattice replaced.
+    begun: u32,
+    film: Film,
+    probes: BiasProbes,
+    report: RenderReport,
+}
+
+/// Where scattered light is gathered from.
+enum Strategy<'a> {
+    Knn,
+    Lattice { emission: Emission<'a>, resolution: usize },
+}
+
+impl<'a, E: Extinction> Passes<'a, E> {
+    /// None yet.
+    pub fn new(
+        scene: &'a Scene,
+        extinction: &'a E,
+        options: &'a RenderOptions,
+        observer: &'a dyn Observer,
+    ) -> Self {
+        let pixels = (scene.camera.width * scene.camera.height) as u64;
+        let is_limited = options.has_limit();
+        let mut samples_per_pixel = scene.render.samples_per_pixel;
+        let strategy = match scene.gather() {
+            Gather::Knn => Strategy::Knn,
+            Gather::Lattice => {
+                let [fewest, most] = PHOTONS_A_PASS;
+                let mut photons = scene.photons.count;
+                let mut total = photons.saturating_mul(u64::from(options.passes));
+                if is_limited {
+                    samples_per_pixel = 1;
+                    total = expected_photons(options.target_error);
+                    if !scene.photons.is_count_given {
+                        photons = (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);
+                    }
+                }
+                let emission = lit_lattice::emission(scene, extinction, photons);
+                let resolution = scene.render.lattice;
+                let resolution = resolution.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
+                Strategy::Lattice { emission, resolution }
+            }
+        };
+        Self {
+            scene,
+            extinction,
+            options,
+            observer,
+            started: Instant::now(),
+            strategy,
+            samples_per_pixel,
+            begun: 0,
+            film: Film::new(scene.camera.width, scene.camera.height),
+            probes: BiasProbes::default(),
+            report: RenderReport::default(),
+        }
+    }
+
+    /// Renders passes until a limit is reached or the observer asks to stop: at least one.
+    pub fn run(mut self) -> Result<Rendering, RenderError> {
+        loop {
+            self.add_pass()?;
+            self.report.error = self.probes.error(&self.film);
+            self.observer.pass_finished(self.report.passes_done, self.report.error);
+            if self.is_done() || self.observer.cancelled() {
+                return Ok(Rendering { film: self.film, report: self.report });
+            }
+            self.refine();
+        }
+    }
+
+    fn add_pass(&mut self) -> Result<(), RenderError> {
+        let Self { scene, extinction, observer, report, .. } = self;
+        let seed = pass_seed(scene.photons.seed, self.begun);
+        let film_pass = FilmPass {
+            scene,
+            seed,
+            samples_per_pixel: self.samples_per_pixel,
+            first_sample: u64::from(self.begun) * self.samples_per_pixel as u64,
+        };
+        let made = match &mut self.strategy {
+            Strategy::Knn => {
+                let lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
+                gather(&film_pass, || lit.reader(), *observer, report)
+            }
+            Strategy::Lattice { emission, resolution } => {
+                emission.reseed(seed);
+                let lattice = lit_lattice::trace(
+                    scene,
+                    *extinction,
+                    emission,
+                    *resolution,
+                    *observer,
+                    report,
+                )?;
+                let reader = || Reader::new(scene, *extinction, &lattice);
+                gather(&film_pass, reader, *observer, report)
+            }
+        };
+        self.begun += 1;
+        self.film.average_in(&made.film, report.passes_done);
+        self.probes.add(&made.coarse_differences);
+        report.passes_done += 1;
+        Ok(())
+    }
+
+    /// Whether a limit is reached.
+    fn is_done(&self) -> bool {
+        let done = self.report.passes_done;
+        let within = |target: f64| {
+            let error = self.report.error.map_or(f64::INFINITY, |error| error.total());
+            done >= FEWEST_FOR_ERROR && error <= target
+        };
+        // A pass that would end too late is not begun.
+        let seconds = self.started.elapsed().as_secs_f64();
+        let next = seconds * f64::from(self.begun + 1) / f64::from(self.begun);
+        done >= self.options.passes
+            || self.options.target_error.is_some_and(within)
+            || self.options.seconds.is_some_and(|budget| next > budget)
+    }
+
+    /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
+    fn refine(&mut self) {
+        let (Some(target), Some(error)) = (self.options.target_error, self.report.error) else {
+            return;
+        };
+        let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
+        let too_much = error.bias / (BIAS_SHARE * target);
+        let can = *resolution < lit_lattice::MAX_RESOLUTION && self.scene.render.lattice.is_none();
+        if self.report.passes_done != FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
+            return;
+        }
+        let finer = *resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
+        *resolution = (finer as usize).min(lit_lattice::MAX_RESOLUTION);
+        self.film = Film::new(self.film.width, self.film.height);
+        self.probes = BiasProbes::default();
+        self.report.passes_done = 0;
+    }
+}
+
+/// Photons that an image of that error takes in smoke or fog, to the order of magnitude.
+fn expected_photons(target_error: Option<f64>) -> u64 {
+    let target = target_error.unwrap_or(0.02);
+    (1.5e5 * (0.05 / target).powi(2)).min(1e12) as u64
+}
+
+/// Gathers a pass, timed and observed.
+fn gather<'a, E: Extinction + 'a, S: ScatteredLight>(
+    pass: &FilmPass<'a>,
+    reader: impl Fn() -> Reader<'a, E, S> + Sync,
+    observer: &dyn Observer,
+    report: &mut RenderReport,
+) -> PassFilm {
+    let started = Instant::now();
+    let camera = &pass.scene.camera;
+    observer.stage_started(Stage::Gather, (camera.width * camera.height) as u64);
+    let made = pass.render(reader, observer);
+    observer.stage_finished(Stage::Gather);
+    report.seconds.gather += started.elapsed().as_secs_f64();
+    made
+}
+
+/// The seed of a pass: the scene's own for the first, so that one pass is the render without passes.
+fn pass_seed(seed: u64, pass: u32) -> u64 {
+    if pass == 0 { seed } else { Stream::Scramble.hash(seed, u64::from(pass)) }
+}
