@@ -51,6 +51,18 @@ pub struct EmittedPhoton {
     pub is_from_medium: bool,
 }
 
+/// A ray along which photons leave.
+#[derive(Clone, Copy, Debug)]
+pub struct EmittedRay {
+    ray: Ray,
+    /// Of each photon \[W\].
+    power: Rgb,
+    /// How much likelier first collisions are made.
+    boost: f64,
+    number: u64,
+    is_from_medium: bool,
+}
+
 /// All photons of one pass.
 #[derive(Debug)]
 pub struct Emission<'a> {
@@ -162,32 +174,64 @@ impl<'a> Emission<'a> {
     /// Photon `index`, below [`Emission::count`]. `None` where the light sends nothing along the sample,
     /// as outside a spot's cone: the photon counts as emitted with no power.
     pub fn photon(&self, index: u64) -> Option<EmittedPhoton> {
-        let ray_number = index / self.photons_per_ray;
-        let light = self.lights.iter().rev().find(|light| light.first <= ray_number)?;
         let mut random = Stream::Photon.random(self.seed, index);
-        let (sample, flight_quantile) = if self.photons_per_ray == 1 {
-            let sample = light.sampler.sample(index - light.first, &mut random);
-            // The dimensions that lead to the ray come first, then the flight.
-            let quantile = sample.get(light.emitter.dimensions()).copied();
-            (sample, quantile.unwrap_or_else(|| uniform(&mut random)))
-        } else {
-            let mut of_ray = Stream::Ray.random(self.seed, ray_number);
-            let sample = light.sampler.sample(ray_number - light.first, &mut of_ray);
-            let stratum = (index % self.photons_per_ray) as f64 + uniform(&mut random);
-            (sample, stratum / self.photons_per_ray as f64)
-        };
+        if self.photons_per_ray > 1 {
+            let ray = self.ray(index / self.photons_per_ray)?;
+            return Some(self.photon_of(&ray, index));
+        }
+        let light = self.light_of(index)?;
+        let sample = light.sampler.sample(index - light.first, &mut random);
+        // The dimensions that lead to the ray come first, then the flight.
+        let quantile = sample.get(light.emitter.dimensions()).copied();
+        let u = quantile.unwrap_or_else(|| uniform(&mut random));
+        let EmittedRay { ray, power, boost, number, is_from_medium } =
+            light.ray(index, sample, self.photons_per_ray)?;
+        let first_flight = BoostedQuantile { u, boost };
+        Some(EmittedPhoton { ray, power, first_flight, random, ray_number: number, is_from_medium })
+    }
+
+    /// The ray that photons `number` times [`Emission::photons_per_ray`] and on share, where they are several; `None` as of
+    /// [`Emission::photon`].
+    pub fn ray(&self, number: u64) -> Option<EmittedRay> {
+        let light = self.light_of(number)?;
+        let mut random = Stream::Ray.random(self.seed, number);
+        let sample = light.sampler.sample(number - light.first, &mut random);
+        light.ray(number, sample, self.photons_per_ray)
+    }
+
+    /// Photon `index`, one of those of `ray`.
+    pub fn photon_of(&self, ray: &EmittedRay, index: u64) -> EmittedPhoton {
+        let mut random = Stream::Photon.random(self.seed, index);
+        let stratum = (index % self.photons_per_ray) as f64 + uniform(&mut random);
+        let u = stratum / self.photons_per_ray as f64;
+        let first_flight = BoostedQuantile { u, boost: ray.boost };
+        let &EmittedRay { ray, power, number, is_from_medium, .. } = ray;
+        EmittedPhoton { ray, power, first_flight, random, ray_number: number, is_from_medium }
+    }
+
+    /// The light that sends a ray.
+    fn light_of(&self, number: u64) -> Option<&LightShare<'a>> {
+        self.lights.iter().rev().find(|light| light.first <= number)
+    }
+}
+
+impl LightShare<'_> {
+    /// The ray of a sample, for photons each of which carries its part of the light's power.
+    fn ray(
+        &self,
+        number: u64,
+        sample: [f64; MAX_DIMENSIONS],
+        photons_per_ray: u64,
+    ) -> Option<EmittedRay> {
         let [a, b, c, d, e] = sample;
-        let (place, density) = match &light.guide {
+        let (place, density) = match &self.guide {
             Some(guide) => guide.warp(DVec2::new(a, b)),
             None => (DVec2::new(a, b), 1.0),
         };
-        let (ray, power) = light.emitter.sample_ray([place.x, place.y, c, d, e])?;
-        let photons = light.count * self.photons_per_ray;
-        let power = power / (photons as f64 * density);
-        let boost = (light.collision_boost / density).max(1.0);
-        let first_flight = BoostedQuantile { u: flight_quantile, boost };
-        let is_from_medium = light.emitter.is_medium();
-        Some(EmittedPhoton { ray, power, first_flight, random, ray_number, is_from_medium })
+        let (ray, power) = self.emitter.sample_ray([place.x, place.y, c, d, e])?;
+        let power = power / ((self.count * photons_per_ray) as f64 * density);
+        let boost = (self.collision_boost / density).max(1.0);
+        Some(EmittedRay { ray, power, boost, number, is_from_medium: self.emitter.is_medium() })
     }
 }
 

@@ -27,7 +27,10 @@ pub fn mean_channel(color: Rgb) -> f64 {
     (color.x + color.y + color.z) / 3.0
 }
 
-/// exp applied to each channel.
+/// exp applied to each channel; once where they are equal.
 pub fn exp(color: Rgb) -> Rgb {
+    if color.x == color.y && color.y == color.z {
+        return Rgb::splat(color.x.exp());
+    }
     Rgb::new(color.x.exp(), color.y.exp(), color.z.exp())
 }

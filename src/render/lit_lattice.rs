@@ -18,7 +18,7 @@ const MAX_TASKS: u64 = 4;
 
 /// Photons that leave along one ray through a grid, which costs as much to walk as a dozen photons to follow, and through a
 /// uniform medium, where only the way to the ray is saved.
-const PHOTONS_A_RAY: [u64; 2] = [16, 4];
+const PHOTONS_A_RAY: [u64; 2] = [8, 4];
 
 /// Fewer photons than this do not share rays: their number is exact.
 const FEWEST_TO_SHARE: u64 = 4096;
@@ -27,10 +27,7 @@ const FEWEST_TO_SHARE: u64 = 4096;
 pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E, photons: u64) -> Emission<'a> {
     // Photons of one place and direction would go the same way: a glowing medium sends each by its own.
     let photons_a_ray = match scene.medium.emissivity {
-        None if photons >= FEWEST_TO_SHARE => {
-            let test = std::env::var("PV_RAY").ok().and_then(|t| t.parse().ok());
-            test.unwrap_or(PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)])
-        }
+        None if photons >= FEWEST_TO_SHARE => PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)],
         _ => 1,
     };
     scene_emission(scene, extinction, photons, photons_a_ray, scene.photons.seed)

@@ -21,6 +21,9 @@ const PHOTONS_A_PIXEL: u64 = 2;
 /// The fewest and the most photons of such a pass.
 const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
 
+/// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
+const POINTS_A_RAY: usize = 4;
+
 /// Passes from which the error is believed in, and in which a lattice may still turn out too coarse.
 const FEWEST_FOR_ERROR: u32 = 3;
 
@@ -36,6 +39,8 @@ pub struct Passes<'a, E> {
     started: Instant,
     strategy: Strategy<'a>,
     samples_per_pixel: usize,
+    /// Points a ray.
+    most_samples: usize,
     /// Passes begun, with those that a finer lattice replaced.
     begun: u32,
     film: Film,
@@ -87,6 +92,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             started: Instant::now(),
             strategy,
             samples_per_pixel,
+            most_samples: if is_limited { POINTS_A_RAY } else { usize::MAX },
             begun: 0,
             film: Film::new(scene.camera.width, scene.camera.height),
             probes: BiasProbes::default(),
@@ -131,7 +137,9 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     *observer,
                     report,
                 )?;
-                let reader = || Reader::new(scene, *extinction, &lattice);
+                let most_samples = self.most_samples;
+                let reader =
+                    || Reader::new(scene, *extinction, &lattice).with_most_samples(most_samples);
                 gather(&film_pass, reader, *observer, report)
             }
         };

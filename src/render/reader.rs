@@ -29,6 +29,7 @@ pub struct Reader<'a, E, S> {
     scene: &'a Scene,
     extinction: &'a E,
     scattered_light: S,
+    most_samples: usize,
     profile: RayProfile,
     queries: Vec<PhotonQuery>,
 }
@@ -44,7 +45,13 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     /// A reader, to which `scattered_light` says what is scattered more than once.
     pub fn new(scene: &'a Scene, extinction: &'a E, scattered_light: S) -> Self {
         let (profile, queries) = (RayProfile::default(), Vec::new());
-        Self { scene, extinction, scattered_light, profile, queries }
+        Self { scene, extinction, scattered_light, most_samples: usize::MAX, profile, queries }
+    }
+
+    /// The same with no more than so many points a ray, where many rays share a pixel.
+    pub fn with_most_samples(mut self, most_samples: usize) -> Self {
+        self.most_samples = most_samples;
+        self
     }
 
     /// Transmittance of a ray up to `max_distance` \[m\].
@@ -147,7 +154,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         random: &mut Random,
     ) -> Rgb {
         let scattering = self.scattering_ray(ray, span);
-        let samples = self.scene.render.light_samples;
+        let samples = self.scene.render.light_samples.min(self.most_samples);
         let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
         lights.map(|(_, light)| scattering.single_scatter(light, samples, phase, random)).sum()
     }
@@ -170,7 +177,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         random: &mut Random,
     ) {
         let Some(by_transmittance) = ByTransmittance::new(&self.profile, span) else { return };
-        let samples = self.scene.render.march_samples;
+        let samples = self.scene.render.march_samples.min(self.most_samples);
         let count = samples as f64;
         for stratum in 0..samples {
             let u = (stratum as f64 + phase) / count;

@@ -110,10 +110,13 @@ pub fn trace_into<E: Extinction, K: Keep>(
         .map(|(first, keep)| {
             let mut path = Path::new(medium, extinction, settings, keep);
             let mut unreported = 0;
-            for ray in (first as u64..rays).step_by(step) {
-                (ray * per_ray..(ray + 1) * per_ray)
-                    .filter_map(|index| emission.photon(index))
-                    .for_each(|photon| path.follow(photon));
+            for number in (first as u64..rays).step_by(step) {
+                if per_ray == 1 {
+                    emission.photon(number).into_iter().for_each(|photon| path.follow(photon));
+                } else if let Some(ray) = emission.ray(number) {
+                    (number * per_ray..(number + 1) * per_ray)
+                        .for_each(|index| path.follow(emission.photon_of(&ray, index)));
+                }
                 unreported += per_ray;
                 if unreported >= SHARE {
                     advanced(unreported);
