@@ -1,6 +1,7 @@
 //! How far an image is from the truth, as its passes tell.
 //!
-//! Noise is the spread of the passes. Bias is that of interpolation in a lattice: it grows as the square of the
+//! Noise is how the means of even and of odd passes differ, which place their rays independently of each other: within a half, rays of
+//! one pass lie between those of the last, and the spread of single passes would overrate the noise of their mean. Bias is that of interpolation in a lattice: it grows as the square of the
 //! cells, so that light read from cells twice as long differs by three times the bias. The difference is taken, pass by pass, in
 //! one pixel of sixteen; its mean square over pixels, less what its own noise adds, gives the bias.
 
@@ -34,54 +35,78 @@ impl ErrorEstimate {
     }
 }
 
-/// Differences between light from coarse and from fine cells, over passes.
-#[derive(Clone, Debug, Default)]
-pub struct BiasProbes {
-    passes: f64,
-    /// Sum and sum of squares a probed pixel.
-    sums: Vec<[f64; 2]>,
+/// The means of even and of odd passes, and what coarse cells would add in probed pixels.
+#[derive(Clone, Debug)]
+pub struct ErrorProbes {
+    halves: [Film; 2],
+    counts: [u32; 2],
+    /// Sum and sum of squares over passes, a probed pixel.
+    differences: Vec<[f64; 2]>,
 }
 
-impl BiasProbes {
-    /// Adds a pass: what coarse cells add to each probed pixel's mean channel.
-    pub fn add(&mut self, differences: &[f64]) {
-        self.sums.resize(differences.len(), [0.0; 2]);
-        for (sum, difference) in self.sums.iter_mut().zip(differences) {
+impl ErrorProbes {
+    /// No pass yet of a film of that size.
+    pub fn new(width: usize, height: usize) -> Self {
+        let halves = [Film::new(width, height), Film::new(width, height)];
+        Self { halves, counts: [0; 2], differences: Vec::new() }
+    }
+
+    /// Adds a pass: its image, and what coarse cells would add to each probed pixel's mean channel.
+    pub fn add(&mut self, half: usize, film: &Film, differences: &[f64]) {
+        self.halves[half].average_in(film, self.counts[half]);
+        self.counts[half] += 1;
+        self.differences.resize(differences.len(), [0.0; 2]);
+        for (sum, difference) in self.differences.iter_mut().zip(differences) {
             sum[0] += difference;
             sum[1] += difference * difference;
         }
-        self.passes += 1.0;
     }
 
-    /// Mean square of the bias of fine cells; `None` from fewer than two passes.
-    fn mean_square(&self) -> Option<f64> {
-        if self.passes < 2.0 || self.sums.is_empty() {
+    /// The error of the mean of all passes; `None` until both halves have one.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        if self.counts.contains(&0) {
             return None;
         }
-        let pixel = |&[sum, squares]: &[f64; 2]| {
-            let mean = sum / self.passes;
-            let variance = (squares / self.passes - mean * mean) / (self.passes - 1.0);
-            mean * mean - variance
-        };
-        let difference = self.sums.iter().map(pixel).sum::<f64>() / self.sums.len() as f64;
-        Some(difference.max(0.0) / 9.0)
-    }
-
-    /// The error of the mean of the passes; `None` from fewer than two.
-    pub fn error(&self, film: &Film) -> Option<ErrorEstimate> {
-        if self.passes < 2.0 {
-            return None;
-        }
-        let count = film.pixels.len().max(1) as f64;
-        let sum =
-            |value: fn(&crate::film::Pixel) -> f64| film.pixels.iter().map(value).sum::<f64>();
-        let mean = sum(|pixel| mean_channel(pixel.radiance())) / count;
+        let mean = self.mean();
         if mean <= 0.0 {
             return Some(ErrorEstimate::default());
         }
-        let variance = sum(|pixel| mean_channel(pixel.variance)) / count;
-        let bias = self.mean_square().unwrap_or(0.0);
-        Some(ErrorEstimate { noise: variance.sqrt() / mean, bias: bias.sqrt() / mean })
+        Some(ErrorEstimate { noise: self.noise() / mean, bias: self.bias() / mean })
+    }
+
+    /// Mean channel of all pixels and passes.
+    fn mean(&self) -> f64 {
+        let of_half = |half: &Film| -> f64 {
+            half.pixels.iter().map(|pixel| mean_channel(pixel.radiance())).sum()
+        };
+        let [even, odd] = self.counts.map(f64::from);
+        let sum = even * of_half(&self.halves[0]) + odd * of_half(&self.halves[1]);
+        sum / ((even + odd) * self.halves[0].pixels.len().max(1) as f64)
+    }
+
+    /// Root mean square: of two means of m and n passes, the mean of all has the variance of their difference times
+    /// m n / (m + n)^2.
+    fn noise(&self) -> f64 {
+        let [even, odd] = self.counts.map(f64::from);
+        let pixels = self.halves[0].pixels.iter().zip(&self.halves[1].pixels);
+        let squares = pixels.map(|(a, b)| {
+            let difference = a.radiance() - b.radiance();
+            mean_channel(difference * difference)
+        });
+        let mean = squares.sum::<f64>() / self.halves[0].pixels.len().max(1) as f64;
+        (mean * even * odd).sqrt() / (even + odd)
+    }
+
+    /// Root mean square of the bias of fine cells.
+    fn bias(&self) -> f64 {
+        let passes = f64::from(self.counts.iter().sum::<u32>());
+        let pixel = |&[sum, squares]: &[f64; 2]| {
+            let mean = sum / passes;
+            let variance = (squares / passes - mean * mean) / (passes - 1.0);
+            mean * mean - variance
+        };
+        let difference: f64 = self.differences.iter().map(pixel).sum();
+        (difference.max(0.0) / self.differences.len().max(1) as f64 / 9.0).sqrt()
     }
 }
 
@@ -90,42 +115,42 @@ mod tests {
     use super::*;
     use crate::math::{Rgb, Stream, uniform};
 
-    /// Passes of known noise and known differences: the estimate finds both.
+    /// Passes of known noise and known differences: the estimate finds both, for equal and unequal halves.
     #[test]
     fn noise_and_bias_are_told_apart() {
-        let (width, height, passes) = (64, 64, 8);
-        let mut random = Stream::Experiment.random(11, 0);
-        let (mut film, mut probes) = (Film::new(width, height), BiasProbes::default());
-        for pass in 0..passes {
-            let mut one = Film::new(width, height);
-            for pixel in &mut one.pixels {
-                pixel.multiple_scatter = Rgb::splat(2.0 + 0.4 * (uniform(&mut random) - 0.5));
+        for passes in [8u32, 5] {
+            let mut random = Stream::Experiment.random(11, 0);
+            let mut probes = ErrorProbes::new(64, 64);
+            for pass in 0..passes {
+                let mut one = Film::new(64, 64);
+                for pixel in &mut one.pixels {
+                    pixel.multiple_scatter = Rgb::splat(2.0 + 0.4 * (uniform(&mut random) - 0.5));
+                }
+                // Coarse cells are off by 0.3 up or down, so fine ones by a third of that; with noise.
+                let differences: Vec<f64> = (0..256)
+                    .map(|index| {
+                        let sign = if index % 2 == 0 { 0.3 } else { -0.3 };
+                        sign + 2.0 * (uniform(&mut random) - 0.5)
+                    })
+                    .collect();
+                probes.add((pass % 2) as usize, &one, &differences);
             }
-            film.average_in(&one, pass);
-            // Coarse cells are off by 0.3 up or down, so fine ones by a third of that; with noise.
-            let differences: Vec<f64> = (0..256)
-                .map(|index| {
-                    let sign = if index % 2 == 0 { 0.3 } else { -0.3 };
-                    sign + 2.0 * (uniform(&mut random) - 0.5)
-                })
-                .collect();
-            probes.add(&differences);
+            let error = probes.error().unwrap();
+            let noise = 0.4 / 12f64.sqrt() / f64::from(passes).sqrt() / 2.0;
+            assert!((error.noise / noise - 1.0).abs() < 0.05, "{error:?} {noise}");
+            assert!((error.bias / 0.05 - 1.0).abs() < 0.2, "{error:?}");
+            assert!((error.total() - error.noise.hypot(error.bias)).abs() < 1e-15);
         }
-        let error = probes.error(&film).unwrap();
-        let noise = 0.4 / 12f64.sqrt() / 8f64.sqrt() / 2.0;
-        assert!((error.noise / noise - 1.0).abs() < 0.03, "{error:?} {noise}");
-        assert!((error.bias / 0.05 - 1.0).abs() < 0.15, "{error:?}");
-        assert!((error.total() - error.noise.hypot(error.bias)).abs() < 1e-15);
     }
 
     #[test]
     fn one_pass_knows_nothing_and_black_has_no_error() {
-        let mut probes = BiasProbes::default();
+        let mut probes = ErrorProbes::new(4, 4);
         let film = Film::new(4, 4);
-        assert_eq!(probes.error(&film), None);
-        probes.add(&[]);
-        assert_eq!(probes.error(&film), None);
-        probes.add(&[]);
-        assert_eq!(probes.error(&film), Some(ErrorEstimate::default()));
+        assert_eq!(probes.error(), None);
+        probes.add(0, &film, &[]);
+        assert_eq!(probes.error(), None);
+        probes.add(1, &film, &[]);
+        assert_eq!(probes.error(), Some(ErrorEstimate::default()));
     }
 }

@@ -34,9 +34,11 @@ pub struct FilmPass<'a> {
     pub scene: &'a Scene,
     /// Seed of the pass.
     pub seed: u64,
+    /// 0 or 1: passes of either half place their rays between each other's, and independently of the other half's.
+    pub half: u32,
     /// Rays a pixel.
     pub samples_per_pixel: usize,
-    /// Number of the first of them among those of all passes.
+    /// Number of the first of them among those of all passes of the half.
     pub first_sample: u64,
 }
 
@@ -129,8 +131,8 @@ impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
     fn add_pixel(&mut self, x: usize, y: usize) {
         let scene = self.pass.scene;
         let index = y * scene.camera.width + x;
-        let samples =
-            PixelSamples::new(&mut Stream::Pixel.random(scene.photons.seed, index as u64));
+        let shift = scene.photons.seed ^ u64::from(self.pass.half);
+        let samples = PixelSamples::new(&mut Stream::Pixel.random(shift, index as u64));
         let random = &mut Stream::Pixel.random(!self.pass.seed, index as u64);
 
         let corner = DVec2::new(x as f64, y as f64);

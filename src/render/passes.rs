@@ -6,7 +6,7 @@ use crate::emission::Emission;
 use crate::film::Film;
 use crate::math::Stream;
 use crate::medium::Extinction;
-use crate::render::error_estimate::BiasProbes;
+use crate::render::error_estimate::ErrorProbes;
 use crate::render::film_pass::{FilmPass, PassFilm};
 use crate::render::scattered_light::ScatteredLight;
 use crate::render::{
@@ -24,8 +24,11 @@ const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
 /// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
 const POINTS_A_RAY: usize = 4;
 
-/// Passes from which the error is believed in, and in which a lattice may still turn out too coarse.
-const FEWEST_FOR_ERROR: u32 = 3;
+/// Passes after which a lattice may turn out too coarse.
+const FEWEST_FOR_BIAS: u32 = 2;
+
+/// Passes from which the error is believed in.
+const FEWEST_FOR_ERROR: u32 = 4;
 
 /// The share of the error asked for that may be bias.
 const BIAS_SHARE: f64 = 0.6;
@@ -44,7 +47,7 @@ pub struct Passes<'a, E> {
     /// Passes begun, with those that a finer lattice replaced.
     begun: u32,
     film: Film,
-    probes: BiasProbes,
+    probes: ErrorProbes,
     report: RenderReport,
 }
 
@@ -95,7 +98,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             most_samples: if is_limited { POINTS_A_RAY } else { usize::MAX },
             begun: 0,
             film: Film::new(scene.camera.width, scene.camera.height),
-            probes: BiasProbes::default(),
+            probes: ErrorProbes::new(scene.camera.width, scene.camera.height),
             report: RenderReport::default(),
         }
     }
@@ -104,7 +107,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
     pub fn run(mut self) -> Result<Rendering, RenderError> {
         loop {
             self.add_pass()?;
-            self.report.error = self.probes.error(&self.film);
+            self.report.error = self.probes.error();
             self.observer.pass_finished(self.report.passes_done, self.report.error);
             if self.is_done() || self.observer.cancelled() {
                 return Ok(Rendering { film: self.film, report: self.report });
@@ -116,11 +119,13 @@ impl<'a, E: Extinction> Passes<'a, E> {
     fn add_pass(&mut self) -> Result<(), RenderError> {
         let Self { scene, extinction, observer, report, .. } = self;
         let seed = pass_seed(scene.photons.seed, self.begun);
+        let half = self.begun % 2;
         let film_pass = FilmPass {
             scene,
             seed,
+            half,
             samples_per_pixel: self.samples_per_pixel,
-            first_sample: u64::from(self.begun) * self.samples_per_pixel as u64,
+            first_sample: u64::from(self.begun / 2) * self.samples_per_pixel as u64,
         };
         let made = match &mut self.strategy {
             Strategy::Knn => {
@@ -145,7 +150,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         };
         self.begun += 1;
         self.film.average_in(&made.film, report.passes_done);
-        self.probes.add(&made.coarse_differences);
+        self.probes.add(half as usize, &made.film, &made.coarse_differences);
         report.passes_done += 1;
         Ok(())
     }
@@ -173,13 +178,13 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
         let too_much = error.bias / (BIAS_SHARE * target);
         let can = *resolution < lit_lattice::MAX_RESOLUTION && self.scene.render.lattice.is_none();
-        if self.report.passes_done != FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
+        if self.report.passes_done != FEWEST_FOR_BIAS || too_much <= 1.0 || !can {
             return;
         }
         let finer = *resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
         *resolution = (finer as usize).min(lit_lattice::MAX_RESOLUTION);
         self.film = Film::new(self.film.width, self.film.height);
-        self.probes = BiasProbes::default();
+        self.probes = ErrorProbes::new(self.film.width, self.film.height);
         self.report.passes_done = 0;
     }
 }
