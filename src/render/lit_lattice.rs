@@ -88,7 +88,7 @@ impl<E: Extinction> Fill<'_, E> {
         let fine = Cells::from_sums(shape, sums);
         let coarse = fine.coarser();
         report.seconds.build += started.elapsed().as_secs_f64();
-        [fine, coarse]
+        [fine.sharpened(), coarse.sharpened()]
     }
 }
 
@@ -99,7 +99,7 @@ pub const MAX_RESOLUTION: usize = 512;
 /// as its inverse root, so that their sum is least where cells shrink with the fifth root of the photons. Light varies more
 /// in a grid than in a uniform medium.
 pub fn resolution<E: Extinction>(photons: u64) -> usize {
-    let cells = if E::IS_UNIFORM { 36.0 } else { 56.0 };
+    let cells = if E::IS_UNIFORM { 24.0 } else { 36.0 };
     let cells = cells * (photons as f64 / 1.5e5).powf(0.2);
-    (cells as usize).clamp(8, 192)
+    (cells as usize).clamp(8, 128)
 }

@@ -24,8 +24,8 @@ const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
 /// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
 const POINTS_A_RAY: usize = 4;
 
-/// Passes after which a lattice may turn out too coarse.
-const FEWEST_FOR_BIAS: u32 = 2;
+/// What the estimated bias is off by, as a share of the estimated noise.
+const BIAS_NOISE: f64 = 0.1;
 
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
@@ -176,9 +176,10 @@ impl<'a, E: Extinction> Passes<'a, E> {
             return;
         };
         let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
-        let too_much = error.bias / (BIAS_SHARE * target);
+        // What the estimate of the bias may be off by itself counts as noise.
+        let too_much = (error.bias - BIAS_NOISE * error.noise) / (BIAS_SHARE * target);
         let can = *resolution < lit_lattice::MAX_RESOLUTION && self.scene.render.lattice.is_none();
-        if self.report.passes_done != FEWEST_FOR_BIAS || too_much <= 1.0 || !can {
+        if self.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
             return;
         }
         let finer = *resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
