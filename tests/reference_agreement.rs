@@ -46,7 +46,7 @@ fn assert_agree(scene: &mut Scene, what: &str) {
     let photons = over_seeds(scene, |scene| {
         layers(&render(scene, &RenderOptions { passes: 1 }, &Unobserved).unwrap().film)
     });
-    let limits = Limits { samples: Some(16), ..Limits::default() };
+    let limits = Limits { samples: Some(8), ..Limits::default() };
     let paths = over_seeds(scene, |scene| {
         layers(&render_reference(scene, &limits, &Unwatched).unwrap().film)
     });

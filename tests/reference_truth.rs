@@ -41,11 +41,12 @@ fn airlight_of_a_point_light() {
         let medium = grey_fog(bounds, sigma_t, number(row, "albedo"), number(row, "g"));
         let scene = scene(medium, one_watt(vector(row, "light")), 1);
         let ray = Ray::new(vector(row, "origin"), vector(row, "dir_unnormalised").normalize());
-        let found = along(&scene, &ray, 1000, |seen| seen.single_scatter.x);
+        let found = along(&scene, &ray, 500, |seen| seen.single_scatter.x);
         let exact = number(row, "L");
-        found.assert_is(exact, name);
+        // In the thinnest media one path in a million collides, and brings a millionth of the light.
+        found.assert_within(exact, 2e-6 * exact, name);
         // Of a sharp lobe only the few paths tell that meet it.
-        let noise = if number(row, "g").abs() > 0.9 { 0.1 } else { 0.03 };
+        let noise = if number(row, "g").abs() > 0.9 { 0.15 } else { 0.05 };
         assert!(found.error < noise * exact, "{name}: {found:?}");
     }
 }
@@ -58,10 +59,10 @@ fn glowing_balls() {
         let scene = scene(grey_fog(ball(radius), 1.0, albedo, 0.0), one_watt(DVec3::ZERO), 1);
         for (impact, exact) in numbers(row, "b_over_R").into_iter().zip(numbers(row, "L")) {
             let ray = Ray::new(DVec3::new(impact * radius, 0.0, -9.0), DVec3::Z);
-            let found = along(&scene, &ray, 300, |seen| seen.radiance().x);
+            let found = along(&scene, &ray, 150, |seen| seen.radiance().x);
             let what = format!("albedo {albedo}, radius {radius}, b/R {impact}");
             found.assert_is(exact, &what);
-            assert!(found.error < 0.06 * exact, "{what}: {found:?}");
+            assert!(found.error < 0.15 * exact, "{what}: {found:?}");
         }
     }
 }
@@ -76,12 +77,13 @@ fn glow_in_a_medium_without_end() {
         let start = (distance * distance - impact * impact).sqrt();
         let ray = Ray::new(DVec3::new(impact, 0.0, -start), DVec3::Z);
         let what = format!("albedo {albedo}, from {distance}, impact {impact}");
-        let found = along(&scene, &ray, 500, |seen| seen.radiance().x);
+        let paths = if albedo < 0.95 { 200 } else { 30 };
+        let found = along(&scene, &ray, paths, |seen| seen.radiance().x);
         found.assert_is(number(row, "L_total"), &what);
-        let single = along(&scene, &ray, 500, |seen| seen.single_scatter.x);
+        let single = along(&scene, &ray, paths, |seen| seen.single_scatter.x);
         single.assert_is(number(row, "L_single"), &format!("{what}, single"));
         // From ten mean free paths away few paths come near the light.
-        assert!(distance > 5.0 || found.error < 0.05 * found.mean, "{what}: {found:?}");
+        assert!(distance > 5.0 || found.error < 0.15 * found.mean, "{what}: {found:?}");
     }
 }
 
