@@ -2,6 +2,7 @@
 
 use photonvdb::emission::EmissionKind;
 use photonvdb::lab::{AnalyticScene, CompareRequest, CompareRow, CompareTable, LabError};
+use photonvdb::math::DVec3;
 
 /// |z| that 1 of 150 000 standard normal numbers exceeds.
 const LIMIT: f64 = 4.5;
@@ -79,7 +80,7 @@ fn power_densities_add_up_to_known_collisions() {
             let terms = (0..=steps).map(|i| {
                 let t = low + f64::from(i) * width;
                 let weight = if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                weight * t * t * scene.power_density(t)
+                weight * t * t * scene.power_density(DVec3::new(0.0, t, 0.0))
             });
             let sum = 4.0 * std::f64::consts::PI * width / 3.0 * terms.sum::<f64>();
             let exact = within(to) - within(from);

@@ -19,6 +19,7 @@ pub mod figures;
 mod jitter;
 mod model;
 mod plot;
+mod thread_clock;
 
 pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
 pub use compare::{AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost};

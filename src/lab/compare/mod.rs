@@ -10,12 +10,15 @@
 //! - smoothing, its mean over the ball / its value at the query - 1;
 //! - total, k / (n V(R) p) - 1: what a render sees.
 //!
+//! Where photons differ in power, power found over power expected stands for k / u.
+//!
 //! Queries of one map share its photons, so that standard errors come from the means of maps.
 
 mod analytic;
 mod csv;
 mod law;
 mod photon_maps;
+mod point_scene;
 mod query_errors;
 mod request;
 mod row;

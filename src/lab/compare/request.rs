@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::analytic::AnalyticScene;
 use super::photon_maps::PhotonMaps;
-use super::query_errors::{COUNT_STEP, Queries, QueryErrors, SPREAD, photons_sought};
+use super::query_errors::{COUNT_STEP, Queries, QueryErrors, photons_sought};
 use super::row::{CompareRow, Sample};
 use crate::emission::EmissionKind;
 use crate::lab::error::LabError;
@@ -94,7 +94,7 @@ impl CompareRequest {
         Ok(CompareTable { rows, costs })
     }
 
-    /// How far queries look \[m\], where balls stay clear of the light.
+    /// How far queries look \[m\], where balls stay clear of lights and of faces that are in the way.
     fn reach(&self, ks: &[u64]) -> Result<f64, LabError> {
         let largest = ks.last().copied().unwrap_or(1);
         if let Some(&k) = ks.first().filter(|&&k| k < 2) {
@@ -104,11 +104,11 @@ impl CompareRequest {
             return Err(LabError::BallTooLarge { k: largest, n: self.n });
         }
         let sought = COUNT_STEP * photons_sought(largest) as f64;
-        let power = sought / self.n as f64;
-        // The density falls with the distance: the farthest query has the largest ball.
-        let radius = self.scene.ball_radius(1.0 + SPREAD, power).map(|radius| MARGIN * radius);
+        let power = sought * self.scene.largest_power(self.n);
+        let radius = self.scene.ball_radius(self.scene.hardest_query(), power);
         radius
-            .filter(|&radius| radius < 1.0 - SPREAD)
+            .map(|radius| MARGIN * radius)
+            .filter(|&radius| radius < self.scene.reach_limit())
             .ok_or(LabError::BallTooLarge { k: largest, n: self.n })
     }
 
@@ -120,8 +120,7 @@ impl CompareRequest {
         reach: f64,
         advanced: &mut impl FnMut(),
     ) -> Result<Vec<Vec<QueryErrors>>, LabError> {
-        let kept = 1.0 - SPREAD - reach..1.0 + SPREAD + reach;
-        let maps = PhotonMaps::new(self.scene, kind, self.n, kept);
+        let maps = PhotonMaps::new(self.scene, kind, self.n, reach);
         let queries = Queries { scene: self.scene, photon_count: self.n, ks, reach };
         let seed = Stream::Experiment.hash(self.seed, kind as u64);
         // One map at a time, its photons and queries in parallel, keeps the memory that of a single map.
