@@ -107,6 +107,74 @@ fn scattering_undoes_strata_as_counts_foretell() {
     }
 }
 
+/// A furnace has the same density up to its faces and corners, photons of unequal power, and clusters of the collisions of one
+/// photon: random emission reads 1/(k-1) too much all the same, k - 1 nothing.
+#[test]
+fn furnaces_are_read_evenly_up_to_their_faces() {
+    for scene in [AnalyticScene::UniformBall, AnalyticScene::UniformBox] {
+        let furnace = CompareRequest { scene, ..request(50_000, 40, 500) };
+        let table = tabulate(&furnace, 2);
+        for row in &table.rows {
+            assert_eq!((row.smoothing_bias, row.total_bias), (0.0, row.intrinsic_bias));
+            let allowed = LIMIT * row.std_error + 0.05 * row.count_law_bias;
+            let difference = (row.intrinsic_bias - row.count_law_bias).abs();
+            assert!(difference < allowed, "{row:?}");
+            if row.emission == "random" {
+                assert!(row.law_z.abs() < LIMIT, "{row:?}");
+                let z = row.intrinsic_bias_k_minus_1 / row.std_error;
+                assert!(z.abs() < LIMIT, "{row:?}");
+            } else {
+                // Five dimensions of strata, and photons that have scattered, leave little.
+                assert!(row.variance_ratio.is_some_and(|r| (0.8..1.5).contains(&r)), "{row:?}");
+            }
+        }
+    }
+}
+
+/// Parallel light is stratified in three dimensions as light of a point is.
+#[test]
+fn a_beam_obeys_the_laws() {
+    let beam = CompareRequest { scene: AnalyticScene::Beam, ..request(100_000, 40, 500) };
+    let table = tabulate(&beam, 2);
+    for k in [5, 10, 20] {
+        let random = row(&table, "random", k);
+        assert!(random.law_z.abs() < LIMIT, "{random:?}");
+        let stratified = row(&table, "stratified", k);
+        let difference = (stratified.intrinsic_bias - stratified.law_bias).abs();
+        let allowed = 3.0 * stratified.std_error + 0.05 * stratified.law_bias;
+        assert!(difference < allowed, "{stratified:?}");
+        assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.3), "{stratified:?}");
+        // 0.1 R^2, up to the spread of R.
+        let smoothing = stratified.smoothing_bias / stratified.smoothing_bias_exact;
+        assert!((0.9..1.4).contains(&smoothing), "{stratified:?}");
+    }
+}
+
+/// What is saved is told against the random emission of the same k.
+#[test]
+fn savings_are_photons_and_seconds_of_random_emission() {
+    let time = std::cell::Cell::new(0.0);
+    let request = request(20_000, 3, 50);
+    let processor_seconds = || {
+        time.set(time.get() + 1.0);
+        Some(time.get())
+    };
+    let table = request.tabulate(processor_seconds, || ()).unwrap();
+    assert_eq!(table.savings.len(), 3);
+    for saving in &table.savings {
+        let [random, own] = ["random", saving.emission].map(|name| row(&table, name, saving.k));
+        assert_eq!(saving.photons, own.photon_ratio / random.photon_ratio);
+        // All maps took as long.
+        assert_eq!(saving.seconds, Some(saving.photons));
+    }
+    let (plain, timed) = (table.to_csv(), table.to_csv_with_times());
+    for (plain, timed) in plain.lines().zip(timed.lines()) {
+        assert!(
+            timed.starts_with(plain) && timed.split(',').count() == plain.split(',').count() + 3
+        );
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let request = CompareRequest {

@@ -22,7 +22,7 @@ mod plot;
 mod thread_clock;
 
 pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
-pub use compare::{AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost};
+pub use compare::{AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost, Saving};
 pub use constant::Constant;
 pub use error::LabError;
 pub use experiment::{Experiment, Measured, Method, Moments};

@@ -26,7 +26,8 @@ pub fn run(arguments: &CompareArguments) -> Result<(), CliError> {
     let table = pool.install(|| request.tabulate(cpu_seconds, || bar.inc(1)))?;
     bar.finish_and_clear();
     let chart = chart::intrinsic_bias(&table);
-    arguments.outputs.write(&table.to_csv(), &table, &chart, &summary::of(&table))
+    let csv = if arguments.outputs.timing { table.to_csv_with_times() } else { table.to_csv() };
+    arguments.outputs.write(&csv, &table, &chart, &summary::of(&table))
 }
 
 fn request(arguments: &CompareArguments) -> Result<CompareRequest, CliError> {

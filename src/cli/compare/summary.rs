@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use photonvdb::lab::{CompareRow, CompareTable};
+use photonvdb::lab::{CompareRow, CompareTable, Saving};
 
 /// The table, and what it cost. Biases in per cent.
 pub fn of(table: &CompareTable) -> String {
@@ -17,7 +17,7 @@ pub fn of(table: &CompareTable) -> String {
     }
     let _ = writeln!(
         text,
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         "emission",
         "k",
         "intrinsic bias",
@@ -30,26 +30,35 @@ pub fn of(table: &CompareTable) -> String {
         "total bias",
         "sd",
         "var. ratio",
-        "photons"
+        "photons",
+        "efficiency"
     );
     for row in &table.rows {
         let _ = writeln!(text, "{}", line(row));
     }
     for cost in &table.costs {
-        let seconds = cost.seconds_per_map.map_or("-".into(), |seconds| format!("{seconds:.2} s"));
-        let rows = table.rows.iter().filter(|row| row.emission == cost.emission);
-        let efficiencies: Vec<String> = rows
-            .filter_map(|row| Some(format!("{:.3e} (k = {})", row.efficiency?, row.k)))
-            .collect();
-        let _ = writeln!(
-            text,
-            "{}: {seconds} of processor time a run; efficiency 1/(squared error x time) {}",
-            cost.emission,
-            efficiencies.join(", ")
-        );
+        let seconds = cost.seconds_per_map.map_or("-".into(), |seconds| format!("{seconds:.3} s"));
+        let _ = writeln!(text, "{}: {seconds} of processor time a run", cost.emission);
+    }
+    for saving in &table.savings {
+        let _ = writeln!(text, "{}", saving_line(saving));
     }
     text + "law: 1/(k-1), or of one photon a cubic cell; by count: from the variance of photon counts in these maps;\n\
-            photons: what random emission needs for the same squared error of k/u in the same ball, over what this one needs\n"
+            photons: what random emission needs for the same squared error of k/u in the same ball, over what this one needs;\n\
+            efficiency: 1 / (squared error x processor time of a run [s])\n"
+}
+
+/// What a way of emission saves, as a sentence.
+pub(super) fn saving_line(saving: &Saving) -> String {
+    let share = |ratio: f64, what: &str| match ratio {
+        ratio if ratio >= 1.0 => format!("1/{ratio:.2} of the {what}"),
+        ratio => format!("{:.2} times the {what}", 1.0 / ratio),
+    };
+    let photons = share(saving.photons, "photons");
+    let seconds = saving.seconds.map(|ratio| " and ".to_owned() + &share(ratio, "seconds"));
+    let (emission, k) = (saving.emission, saving.k);
+    let seconds = seconds.unwrap_or_default();
+    format!("k = {k}: {emission} needs {photons}{seconds} that random needs for the same error")
 }
 
 fn line(row: &CompareRow) -> String {
@@ -58,7 +67,7 @@ fn line(row: &CompareRow) -> String {
         |value: f64, error: f64| format!("{:+.3} +- {:.3}", 100.0 * value, 100.0 * error);
     let ratio = row.variance_ratio.zip(row.variance_ratio_std_error);
     format!(
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         row.emission,
         row.k,
         with_error(row.intrinsic_bias, row.std_error),
@@ -72,5 +81,6 @@ fn line(row: &CompareRow) -> String {
         format!("{:.2}", 100.0 * row.variance.sqrt()),
         ratio.map_or("-".into(), |(ratio, error)| format!("{ratio:.2} +- {error:.2}")),
         format!("{:.2}", row.photon_ratio),
+        row.efficiency.map_or("-".into(), |efficiency| format!("{efficiency:.3e}")),
     )
 }

@@ -22,8 +22,10 @@ mod point_scene;
 mod query_errors;
 mod request;
 mod row;
+mod saving;
 mod scattering;
 
 pub use analytic::AnalyticScene;
 pub use request::{CompareRequest, CompareTable, EmissionCost};
 pub use row::CompareRow;
+pub use saving::Saving;

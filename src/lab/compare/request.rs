@@ -7,6 +7,7 @@ use super::analytic::AnalyticScene;
 use super::photon_maps::PhotonMaps;
 use super::query_errors::{COUNT_STEP, Queries, QueryErrors, photons_sought};
 use super::row::{CompareRow, Sample};
+use super::saving::Saving;
 use crate::emission::EmissionKind;
 use crate::lab::error::LabError;
 use crate::math::Stream;
@@ -43,6 +44,8 @@ pub struct CompareTable {
     pub rows: Vec<CompareRow>,
     /// One for each way of emission.
     pub costs: Vec<EmissionCost>,
+    /// What they save over random emission, if that was measured: way by way, k by k.
+    pub savings: Vec<Saving>,
 }
 
 /// What the maps of one way of emission cost.
@@ -91,7 +94,8 @@ impl CompareRequest {
                 rows.push(CompareRow::new(self, *kind, k, sample, random, seconds));
             }
         }
-        Ok(CompareTable { rows, costs })
+        let savings = savings(&rows, &costs);
+        Ok(CompareTable { rows, costs, savings })
     }
 
     /// How far queries look \[m\], where balls stay clear of lights and of faces that are in the way.
@@ -139,6 +143,24 @@ impl CompareRequest {
             })
             .collect()
     }
+}
+
+/// Photons are compared by what independent ones would need, of which both ways are so many times better.
+fn savings(rows: &[CompareRow], costs: &[EmissionCost]) -> Vec<Saving> {
+    let random = emission_name(EmissionKind::Random);
+    let seconds_of = |name| {
+        let cost = costs.iter().find(|cost| cost.emission == name);
+        cost.and_then(|cost| cost.seconds_per_map)
+    };
+    let others = rows.iter().filter(|row| row.emission != random);
+    others
+        .filter_map(|row| {
+            let other = rows.iter().find(|other| other.emission == random && other.k == row.k)?;
+            let photons = row.photon_ratio / other.photon_ratio;
+            let (seconds, of_random) = (seconds_of(row.emission), seconds_of(random));
+            Some(Saving::new(row.emission, row.k, photons, seconds, of_random))
+        })
+        .collect()
 }
 
 fn merged(shares: Vec<Vec<QueryErrors>>, count: usize) -> Vec<QueryErrors> {
