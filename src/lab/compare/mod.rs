@@ -1,4 +1,4 @@
-//! Random against stratified emission where the power density is known: the renderer's own photons, map and search.
+//! Random against stratified emission where the power density is known (and, in `scene`, where it is measured): the renderer's own photons, map and search.
 //!
 //! ```text
 //! analytic scene ──emission, tracing──▶ photon maps ──k nearest──▶ errors a query ──over maps──▶ rows
@@ -24,8 +24,13 @@ mod request;
 mod row;
 mod saving;
 mod scattering;
+mod scene;
 
 pub use analytic::AnalyticScene;
 pub use request::{CompareRequest, CompareTable, EmissionCost};
 pub use row::CompareRow;
 pub use saving::Saving;
+pub use scene::{
+    PixelRow, PointRow, SceneComparison, SceneComparisonError, SceneCost, SceneReference,
+    SceneTable,
+};

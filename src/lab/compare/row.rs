@@ -100,14 +100,14 @@ impl Sample {
     }
 
     /// One figure a map.
-    fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
+    pub(super) fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
         let mut moments = Moments::default();
         self.maps.iter().for_each(|map| moments.add(figure(map)));
         moments
     }
 
     /// Variance of single queries, with its standard error.
-    fn variance(&self) -> (f64, f64) {
+    pub(super) fn variance(&self) -> (f64, f64) {
         let mean = self.all.intrinsic.bias();
         let about_mean = self.over_maps(|map| {
             let map = &map.intrinsic;

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use photonvdb::lab::{CompareRow, CompareTable, Saving};
+use photonvdb::lab::{CompareRow, CompareTable};
+
+use super::{percent_with_error, ratio, saving_line};
 
 /// The table, and what it cost. Biases in per cent.
 pub fn of(table: &CompareTable) -> String {
@@ -48,38 +50,22 @@ pub fn of(table: &CompareTable) -> String {
             efficiency: 1 / (squared error x processor time of a run [s])\n"
 }
 
-/// What a way of emission saves, as a sentence.
-pub(super) fn saving_line(saving: &Saving) -> String {
-    let share = |ratio: f64, what: &str| match ratio {
-        ratio if ratio >= 1.0 => format!("1/{ratio:.2} of the {what}"),
-        ratio => format!("{:.2} times the {what}", 1.0 / ratio),
-    };
-    let photons = share(saving.photons, "photons");
-    let seconds = saving.seconds.map(|ratio| " and ".to_owned() + &share(ratio, "seconds"));
-    let (emission, k) = (saving.emission, saving.k);
-    let seconds = seconds.unwrap_or_default();
-    format!("k = {k}: {emission} needs {photons}{seconds} that random needs for the same error")
-}
-
 fn line(row: &CompareRow) -> String {
     let percent = |value: f64| format!("{:+.3}", 100.0 * value);
-    let with_error =
-        |value: f64, error: f64| format!("{:+.3} +- {:.3}", 100.0 * value, 100.0 * error);
-    let ratio = row.variance_ratio.zip(row.variance_ratio_std_error);
     format!(
         "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         row.emission,
         row.k,
-        with_error(row.intrinsic_bias, row.std_error),
+        percent_with_error(row.intrinsic_bias, row.std_error),
         percent(row.intrinsic_bias_k_minus_half),
         percent(row.intrinsic_bias_k_minus_1),
         percent(row.law_bias),
         percent(row.count_law_bias),
         format!("{:.1} +- {:.1}", 100.0 * row.reduction, 100.0 * row.reduction_std_error),
         percent(row.smoothing_bias),
-        with_error(row.total_bias, row.total_std_error),
+        percent_with_error(row.total_bias, row.total_std_error),
         format!("{:.2}", 100.0 * row.variance.sqrt()),
-        ratio.map_or("-".into(), |(ratio, error)| format!("{ratio:.2} +- {error:.2}")),
+        ratio(row.variance_ratio, row.variance_ratio_std_error),
         format!("{:.2}", row.photon_ratio),
         row.efficiency.map_or("-".into(), |efficiency| format!("{efficiency:.3e}")),
     )
