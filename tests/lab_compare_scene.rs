@@ -15,13 +15,13 @@ vertical_fov = 12.0
 resolution = [8, 6]
 ";
 
-/// Parallel light on a box that absorbs.
+/// Parallel light on a box that absorbs nearly all of it.
 const BEAM: &str = r#"
 [medium]
 kind = "homogeneous"
 bounds = { min = [-1.0, -1.0, 0.0], max = [1.0, 1.0, 2.0] }
 sigma_t = 1.0
-albedo = 0.0
+albedo = 0.02
 [[light]]
 kind = "directional"
 direction = [0.0, 0.0, 1.0]
@@ -146,15 +146,17 @@ fn what_cannot_be_compared_says_the_way_out() {
     let refused = |request: &SceneComparison, rest: &str, reference: Option<&RgbImage>| {
         request.tabulate(&mut scene(rest), reference, || None, || ()).unwrap_err()
     };
-    let absorbing = BEAM.replace("photons_only = true", "");
-    let error = refused(&request, &absorbing, None);
-    assert!(matches!(error, SceneComparisonError::TooFewPhotons { stored: 0, .. }), "{error}");
+    let scattered = BEAM.replace("photons_only = true", "");
+    let error = refused(&request, &scattered, None);
+    assert!(matches!(error, SceneComparisonError::TooFewPhotons { n: 1000, .. }), "{error}");
     assert!(error.to_string().contains("--photons-only"), "{error}");
 
     let many = SceneComparison { ks: vec![5000], ..request.clone() };
     let error = refused(&many, BEAM, None);
     assert!(error.to_string().contains("raise --n or lower --k"), "{error}");
 
+    let error = refused(&request, &BEAM.replace("albedo = 0.02", "albedo = 0.0"), None);
+    assert!(matches!(error, SceneComparisonError::BlackReference), "{error}");
     let image = |light: f32| RgbImage { width: 8, height: 6, pixels: vec![[light; 3]; 48] };
     let error = refused(&request, FURNACE, Some(&image(0.0)));
     assert!(matches!(error, SceneComparisonError::BlackReference), "{error}");

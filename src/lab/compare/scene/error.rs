@@ -52,6 +52,8 @@ pub enum SceneComparisonError {
         flags: &'static str,
     },
     /// Nothing to compare with.
-    #[error("the reference image is black: no error can be relative to it")]
+    #[error(
+        "the reference image is black: no light reaches the camera, and no error can be relative to it"
+    )]
     BlackReference,
 }

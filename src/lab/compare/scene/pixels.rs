@@ -75,30 +75,31 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Renders `runs` images of each way of emission and holds them against the reference given, or made here.
+/// The mean of renders with more photons.
+pub(super) fn make_reference(
+    request: &SceneComparison,
+    scene: &mut Scene,
+    advanced: &mut impl FnMut(),
+) -> Result<ReferenceImage, SceneComparisonError> {
+    scene.photons.count = request.reference_photons;
+    let (kind, runs) = (EmissionKind::Stratified, request.reference_runs());
+    let seed = Stream::Experiment.hash(request.seed, 100);
+    ReferenceImage::mean_of(&ImageSample::render(scene, kind, seed, runs, advanced)?)
+}
+
+/// Renders `runs` images of each way of emission and holds them against the reference.
 pub(super) fn measure(
     request: &SceneComparison,
     scene: &mut Scene,
-    given: Option<ReferenceImage>,
+    reference: ReferenceImage,
     processor_seconds: &impl Fn() -> Option<f64>,
     advanced: &mut impl FnMut(),
 ) -> Result<PixelSamples, SceneComparisonError> {
-    let seed = |what: u64| Stream::Experiment.hash(request.seed, what);
-    let reference = match given {
-        Some(reference) => reference,
-        None => {
-            scene.photons.count = request.reference_photons;
-            let runs = request.reference_runs();
-            let stratified = EmissionKind::Stratified;
-            let images = ImageSample::render(scene, stratified, seed(100), runs, advanced)?;
-            ReferenceImage::mean_of(&images)?
-        }
-    };
     scene.photons.count = request.n;
     let (mut figures, mut seconds) = (Vec::new(), Vec::new());
     for &kind in &request.emissions {
         let started = processor_seconds();
-        let seed = seed(101 + kind as u64);
+        let seed = Stream::Experiment.hash(request.seed, 101 + kind as u64);
         let images = ImageSample::render(scene, kind, seed, request.runs, advanced)?;
         let spent = started.zip(processor_seconds()).map(|(start, end)| end - start);
         seconds.push(spent.map(|spent| spent / request.runs as f64));

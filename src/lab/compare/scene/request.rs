@@ -105,10 +105,14 @@ impl SceneComparison {
         }
         let size = [scene.camera.width, scene.camera.height];
         pixels::check(self, size)?;
-        let given = reference.map(|image| ReferenceImage::given(image, size)).transpose()?;
+        // What can fail must fail before the work, not after it.
+        let reference = match reference {
+            Some(image) => ReferenceImage::given(image, size)?,
+            None => pixels::make_reference(self, scene, &mut advanced)?,
+        };
         scene.photons.count = self.n;
         let points = points::measure(self, scene, &ks, &processor_seconds, &mut advanced)?;
-        let images = pixels::measure(self, scene, given, &processor_seconds, &mut advanced)?;
+        let images = pixels::measure(self, scene, reference, &processor_seconds, &mut advanced)?;
 
         let point_rows = PointRow::table(self, &ks, &points);
         let pixel_rows = PixelRow::table(self, scene, &images);
