@@ -10,7 +10,8 @@ const EXPLANATION: &str = "\
 intrinsic bias: power of the k nearest photons over that expected in their ball, the mean of all other maps, less 1;
 smoothing: density expected in that ball over that expected in the inner ball, which stands for the point, less 1;
 total bias: density estimated over that of the inner ball, less 1; local bias: root mean square over single pixels,
-chance taken off; sd and RMSE: relative, one estimate, one pixel; var. ratio: variance of random over this one;
+chance taken off; sd: of one estimate, of one pixel, relative to what is true there; rel. RMSE: of all pixels, relative to
+their mean; var. ratio: variance of random over this one;
 savings: as far as the squared error at points, and the variance of pixels, fall as photons grow in the same balls;
 efficiency: 1 / (squared error x processor time of a map, or of an image [s])
 ";
@@ -71,8 +72,15 @@ fn pixels(text: &mut String, table: &SceneTable) -> std::fmt::Result {
     }
     writeln!(
         text,
-        "{:<11}{:>19}{:>20}{:>12}{:>8}{:>8}{:>14}{:>12}",
-        "emission", "bias", "95 % from..to", "local bias", "sd", "RMSE", "var. ratio", "efficiency"
+        "{:<11}{:>19}{:>20}{:>12}{:>8}{:>11}{:>14}{:>12}",
+        "emission",
+        "bias",
+        "95 % from..to",
+        "local bias",
+        "sd",
+        "rel. RMSE",
+        "var. ratio",
+        "efficiency"
     )?;
     table.pixels.iter().try_for_each(|row| writeln!(text, "{}", pixel_line(row)))
 }
@@ -117,7 +125,7 @@ fn point_line(row: &PointRow) -> String {
 
 fn pixel_line(row: &PixelRow) -> String {
     format!(
-        "{:<11}{:>19}{:>20}{:>12}{:>8}{:>8}{:>14}{:>12}",
+        "{:<11}{:>19}{:>20}{:>12}{:>8}{:>11}{:>14}{:>12}",
         row.emission,
         percent_with_error(row.bias, row.std_error),
         interval(row.low_95, row.high_95),

@@ -52,8 +52,6 @@ pub enum SceneComparisonError {
         flags: &'static str,
     },
     /// Nothing to compare with.
-    #[error(
-        "the reference image is black: no light reaches the camera, and no error can be relative to it"
-    )]
+    #[error("the reference image is black, or not finite: no error can be relative to it")]
     BlackReference,
 }

@@ -16,6 +16,9 @@ const MOST_CHANNELS: u128 = 250_000_000;
 /// Renders of the reference are fewer than runs by this factor, with more photons each.
 const REFERENCE_SHARE: u64 = 4;
 
+/// Pixels darker than this share of the mean count as if they had that light: their errors hardly show.
+const DARK: f64 = 0.1;
+
 /// Images of one scene and size, whose mean is known or sought.
 pub(super) struct ImageSample {
     images: Vec<Vec<f32>>,
@@ -25,26 +28,34 @@ pub(super) struct ImageSample {
 /// What images are held against.
 pub(super) struct ReferenceImage {
     channels: Vec<f64>,
+    /// 1 / the light of each channel's pixel.
+    scales: Vec<f64>,
+    /// The same for every channel: 1 / mean of all.
+    mean_scales: Vec<f64>,
     /// Mean of all channels.
-    pub(super) mean: f64,
+    mean: f64,
     /// Renders it is the mean of; 0 of a given image, whose errors are not known.
     pub(super) runs: u64,
     /// Standard error of its mean, relative.
     pub(super) std_error: f64,
-    /// Variance of its channels, relative to its mean squared.
-    pub(super) variance: f64,
+    /// Variance of its pixels, relative to their light squared.
+    variance: f64,
+    /// The same relative to its mean squared.
+    mean_variance: f64,
 }
 
-/// What the runs of one way of emission say; all relative to the reference's mean.
+/// What the runs of one way of emission say.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImageFigures {
-    /// Mean of all pixels - that of the reference, over runs.
+    /// Mean of all pixels over that of the reference - 1, over runs.
     pub(super) bias: Moments,
-    /// Variance of a pixel, a figure a run.
+    /// Variance of a pixel relative to its light, a figure a run.
     pub(super) variance: Moments,
-    /// Mean squared difference of a pixel from the reference.
+    /// Mean squared difference of a pixel from the reference, relative to its light.
     pub(super) squared_error: f64,
-    /// Mean squared difference of the mean image from the reference.
+    /// The same relative to the light of all pixels.
+    pub(super) mean_squared_error: f64,
+    /// Mean squared difference of the mean image from the reference, relative to each pixel's light.
     pub(super) local_bias_squared: f64,
 }
 
@@ -148,24 +159,32 @@ impl ImageSample {
     }
 
     fn against(&self, reference: &ReferenceImage) -> ImageFigures {
-        let scale = 1.0 / reference.mean;
+        let ReferenceImage { channels, scales, mean_scales, mean, .. } = reference;
         let runs = self.images.len() as f64;
-        let bias = self.over_runs(|image| scale * (mean_f32(image) - reference.mean));
-        let about_mean = runs / (runs - 1.0) * scale * scale;
-        let variance =
-            self.over_runs(|image| about_mean * mean_square_difference(image, &self.mean));
-        let squared = self
-            .over_runs(|image| scale * scale * mean_square_difference(image, &reference.channels));
-        let difference = self.mean.iter().zip(&reference.channels).map(|(a, b)| (a - b).powi(2));
-        let local = scale * scale * difference.sum::<f64>() / self.mean.len() as f64;
-        // What chance adds to both is known and taken off.
+        let bias = self.over_runs(|image| mean_f32(image) / mean - 1.0);
+        let variance = self.variance(scales);
+        let squared_error = |scales: &[f64]| {
+            self.over_runs(|image| mean_square(differences(image, channels), scales)).bias()
+        };
+        let local = self.mean.iter().zip(channels).map(|(a, b)| a - b);
+        let local = mean_square(local, scales);
+        // What chance adds to all of them is known and taken off.
         let noise = reference.noise();
+        let mean_noise = reference.share_of_runs(reference.mean_variance);
         ImageFigures {
             bias,
             variance,
-            squared_error: (squared.bias() - noise).max(0.0),
+            squared_error: (squared_error(scales) - noise).max(0.0),
+            mean_squared_error: (squared_error(mean_scales) - mean_noise).max(0.0),
             local_bias_squared: (local - variance.bias() / runs - noise).max(0.0),
         }
+    }
+
+    /// Variance of a pixel over runs, a figure a run whose mean has no bias.
+    fn variance(&self, scales: &[f64]) -> Moments {
+        let runs = self.images.len() as f64;
+        let correction = runs / (runs - 1.0);
+        self.over_runs(|image| correction * mean_square(differences(image, &self.mean), scales))
     }
 }
 
@@ -188,41 +207,64 @@ impl ReferenceImage {
             let sums = &mut channels[3 * (y * width + x)..][..3];
             sums.iter_mut().zip(pixel).for_each(|(sum, &value)| *sum += share * f64::from(value));
         }
-        let mean = mean_light(&channels)?;
-        Ok(Self { channels, mean, runs: 0, std_error: 0.0, variance: 0.0 })
+        Self::of(channels)
+    }
+
+    /// An image without errors.
+    fn of(channels: Vec<f64>) -> Result<Self, SceneComparisonError> {
+        let mean = channels.iter().sum::<f64>() / channels.len() as f64;
+        if !mean.is_finite() || mean <= 0.0 {
+            return Err(SceneComparisonError::BlackReference);
+        }
+        let light = |pixel: &[f64]| pixel.iter().sum::<f64>() / pixel.len() as f64;
+        let scale = |pixel: &[f64]| 1.0 / light(pixel).max(DARK * mean);
+        let scales = channels.chunks(3).flat_map(|pixel| [scale(pixel); 3]).collect();
+        let mean_scales = vec![1.0 / mean; channels.len()];
+        let (variance, mean_variance) = (0.0, 0.0);
+        Ok(Self {
+            channels,
+            scales,
+            mean_scales,
+            mean,
+            runs: 0,
+            std_error: 0.0,
+            variance,
+            mean_variance,
+        })
     }
 
     fn mean_of(images: &ImageSample) -> Result<Self, SceneComparisonError> {
-        let channels = images.mean.clone();
-        let mean = mean_light(&channels)?;
-        let runs = images.images.len() as f64;
-        let means = images.over_runs(|image| mean_f32(image) / mean - 1.0);
-        let scale = runs / (runs - 1.0) / (mean * mean);
-        let variance =
-            images.over_runs(|image| scale * mean_square_difference(image, &channels)).bias();
-        let runs = images.images.len() as u64;
-        Ok(Self { channels, mean, runs, std_error: means.std_error(), variance })
+        let mut reference = Self::of(images.mean.clone())?;
+        let mean = reference.mean;
+        reference.runs = images.images.len() as u64;
+        reference.std_error = images.over_runs(|image| mean_f32(image) / mean - 1.0).std_error();
+        reference.variance = images.variance(&reference.scales).bias();
+        reference.mean_variance = images.variance(&reference.mean_scales).bias();
+        Ok(reference)
     }
 
-    /// Variance of its pixels as a mean of runs, relative.
+    /// Variance of its pixels as a mean of runs, relative to their light.
     pub(super) fn noise(&self) -> f64 {
-        if self.runs == 0 { 0.0 } else { self.variance / self.runs as f64 }
+        self.share_of_runs(self.variance)
     }
-}
 
-/// Mean of all channels, which errors are relative to.
-fn mean_light(channels: &[f64]) -> Result<f64, SceneComparisonError> {
-    let mean = channels.iter().sum::<f64>() / channels.len() as f64;
-    if mean > 0.0 { Ok(mean) } else { Err(SceneComparisonError::BlackReference) }
+    fn share_of_runs(&self, variance: f64) -> f64 {
+        if self.runs == 0 { 0.0 } else { variance / self.runs as f64 }
+    }
 }
 
 fn mean_f32(image: &[f32]) -> f64 {
     image.iter().map(|&value| f64::from(value)).sum::<f64>() / image.len() as f64
 }
 
-fn mean_square_difference(image: &[f32], from: &[f64]) -> f64 {
-    let squares = image.iter().zip(from).map(|(&a, b)| (f64::from(a) - b).powi(2));
-    squares.sum::<f64>() / image.len() as f64
+fn differences(image: &[f32], from: &[f64]) -> impl Iterator<Item = f64> {
+    image.iter().zip(from).map(|(&a, b)| f64::from(a) - b)
+}
+
+/// Mean of the squares of values times their scales.
+fn mean_square(values: impl Iterator<Item = f64>, scales: &[f64]) -> f64 {
+    let squares = values.zip(scales).map(|(value, scale)| (value * scale).powi(2));
+    squares.sum::<f64>() / scales.len() as f64
 }
 
 #[cfg(test)]

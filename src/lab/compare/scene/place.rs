@@ -2,7 +2,7 @@
 //!
 //! The power within r of a place is kept on a grid of radii that is even in r^3, and read between them linearly in r^3:
 //! exactly where the density is even. Estimates of one map are held against the mean over all other maps, P. Of a Poisson
-//! number N, 1/(N + 1) has the mean of 1/E\[N\]: P is therefore taken as if a typical photon more had been found.
+//! number N, 1/(N + 1) has the mean of 1/E\[N\]: where P divides, it is therefore taken as if a typical photon more had been found.
 
 use crate::map::{NearestPhotons, PhotonMap, RADIUS_FLOOR};
 use crate::math::{Ball, DVec3, Rgb, mean_channel};
@@ -127,12 +127,13 @@ impl Place {
         let readings = &self.readings[first..first + balls.ks.len()];
         readings.iter().map(move |reading| {
             let all = self.read(&self.pooled, reading.radius);
-            let expected = (all - reading.on_grid + photon) / others;
+            let found = (all - reading.on_grid) / others;
+            let expected = found + photon / others;
             let density = (inner - reading.inner + photon) / others / inner_volume;
             let ball = volume(reading.radius);
             PlaceErrors {
                 intrinsic: reading.power / expected - 1.0,
-                smoothing: expected / ball / density - 1.0,
+                smoothing: found / ball / density - 1.0,
                 total: reading.power / ball / density - 1.0,
             }
         })

@@ -208,7 +208,8 @@ mod tests {
             let z = (intrinsic.bias() - exact) / error;
             assert!(z.abs() < 4.5, "k = {k}: {} {exact}, z = {z}", intrinsic.bias());
             let smoothing = sample.over_maps(|map| map.smoothing.bias());
-            assert!(smoothing.bias().abs() < 0.01, "k = {k}: {}", smoothing.bias());
+            // Of 5 x 63 photons a place: 6 % over 200 places, some of which share photons.
+            assert!(smoothing.bias().abs() < 0.02, "k = {k}: {}", smoothing.bias());
             let total = sample.over_maps(|map| map.total.bias());
             assert!((total.bias() / intrinsic.bias() - 1.0).abs() < 0.1, "k = {k}");
         }

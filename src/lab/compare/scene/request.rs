@@ -75,7 +75,7 @@ pub struct SceneReference {
     pub image_photons: u64,
     /// Standard error of the image's mean, relative; 0 of a given image, whose errors are not known.
     pub image_std_error: f64,
-    /// Root of the variance of its pixels, relative to its mean; 0 of a given image.
+    /// Root of the variance of its pixels, relative to their light; 0 of a given image.
     pub image_noise: f64,
 }
 

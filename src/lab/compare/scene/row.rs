@@ -62,7 +62,8 @@ pub struct PointRow {
     pub efficiency: Option<f64>,
 }
 
-/// One way of emission, in pixels, with the scene's own k and divisor. All is relative to the mean of the reference.
+/// One way of emission, in pixels, with the scene's own k and divisor. Figures of single pixels are relative to their own
+/// light in the reference, or to a tenth of the mean's where they are darker.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelRow {
     /// Name of the way of emission.
@@ -97,7 +98,7 @@ pub struct PixelRow {
     pub variance_ratio_std_error: Option<f64>,
     /// Mean squared error of a pixel of one image, the reference's own noise taken off.
     pub squared_error: f64,
-    /// Its root.
+    /// Root of the mean squared error over all pixels, relative to the mean of the reference, as `render --reference` tells it.
     pub rel_rmse: f64,
     /// 1 / (squared error x processor time of an image \[s\]); `None` where the system does not tell the time.
     pub efficiency: Option<f64>,
@@ -217,7 +218,7 @@ impl PixelRow {
                     variance_ratio: ratio.map(|(ratio, _)| ratio),
                     variance_ratio_std_error: ratio.map(|(_, error)| error),
                     squared_error,
-                    rel_rmse: squared_error.sqrt(),
+                    rel_rmse: figures.mean_squared_error.sqrt(),
                     efficiency: seconds.map(|seconds| 1.0 / (squared_error * seconds)),
                 }
             })
