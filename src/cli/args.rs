@@ -25,7 +25,9 @@ Examples:
   photonvdb bias 3d-random 3d-jittered --k 10,50,100
       How far k-nearest estimates are off, exact and measured.
   photonvdb compare analytic:point-absorbing --k 10,50,100
-      What stratified emission gains over random emission.
+      What stratified emission gains over random emission where the truth is known.
+  photonvdb compare fog.toml
+      What it gains in a scene: at points, and in pixels.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
@@ -83,7 +85,7 @@ pub enum Command {
     Reference(Box<ReferenceArguments>),
     /// Measure the bias of density estimates on models whose truth is known
     Bias(Box<BiasArguments>),
-    /// Measure random against stratified emission where the power density is known
+    /// Measure random against stratified emission, in a scene or where the power density is known
     Compare(Box<CompareArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
-use photonvdb::lab::LabError;
+use photonvdb::lab::{LabError, SceneComparisonError};
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::reference::ReferenceError;
 use photonvdb::render::RenderError;
@@ -41,8 +41,16 @@ pub enum CliError {
         "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
     )]
     UnknownModel { name: String, nearest: &'static str },
-    #[error("there is nothing to compare in {name:?}; known are {known}")]
+    #[error(
+        "there is nothing to compare in {name:?}; known are scene files, .toml or .json, and {known}"
+    )]
     UnknownComparison { name: String, known: String },
+    #[error(
+        "{flag} is for scene files: analytic scenes have no images, and all light from photons"
+    )]
+    OnlyForSceneFiles { flag: &'static str },
+    #[error("{path}: {source}", path = path.display())]
+    SceneComparison { path: PathBuf, source: Box<SceneComparisonError> },
     #[error("cannot make the directory {path}: {source}", path = path.display())]
     Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]

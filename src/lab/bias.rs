@@ -84,7 +84,7 @@ pub struct ExperimentCost {
     pub n: u64,
     /// Repetitions, each giving every k at once.
     pub trials: u64,
-    /// Time the threads worked on it, summed \[s\].
+    /// Processor time of all threads \[s\].
     pub seconds: f64,
 }
 

@@ -24,7 +24,7 @@ pub struct CompareRow {
     pub runs: u64,
     /// Queries a map.
     pub queries: u64,
-    /// Mean of k / u - 1.
+    /// Mean of k / u - 1; where photons differ in power, of power found over power expected - 1.
     pub intrinsic_bias: f64,
     /// Its standard error, from the means of maps.
     pub std_error: f64,
@@ -53,7 +53,7 @@ pub struct CompareRow {
     pub reduction: f64,
     /// Its standard error.
     pub reduction_std_error: f64,
-    /// Ball mean over value - 1, exact, for a query at 1 m and the ball where k are expected.
+    /// Ball mean over value - 1, exact, for a query in the middle of all and the ball where k are expected.
     pub smoothing_bias_exact: f64,
     /// Its mean over the balls of all queries.
     pub smoothing_bias: f64,
@@ -100,14 +100,14 @@ impl Sample {
     }
 
     /// One figure a map.
-    fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
+    pub(super) fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
         let mut moments = Moments::default();
         self.maps.iter().for_each(|map| moments.add(figure(map)));
         moments
     }
 
     /// Variance of single queries, with its standard error.
-    fn variance(&self) -> (f64, f64) {
+    pub(super) fn variance(&self) -> (f64, f64) {
         let mean = self.all.intrinsic.bias();
         let about_mean = self.over_maps(|map| {
             let map = &map.intrinsic;
@@ -155,7 +155,8 @@ impl CompareRow {
             (of_random / variance, of_random / variance * errors)
         });
         let squared_error = sample.all.intrinsic.mean_squared_error();
-        let exact_radius = request.scene.ball_radius(1.0, count / request.n as f64);
+        let (scene, place) = (request.scene, request.scene.typical_query());
+        let exact_radius = scene.ball_radius(place, count * scene.largest_power(request.n));
         Self {
             scene: request.scene.name(),
             emission: emission_name(kind),
@@ -178,7 +179,7 @@ impl CompareRow {
             reduction: 1.0 - bias / random_bias,
             reduction_std_error: std_error / random_bias,
             smoothing_bias_exact: exact_radius
-                .map_or(f64::NAN, |radius| request.scene.smoothing(1.0, radius)),
+                .map_or(f64::NAN, |radius| scene.smoothing(place, radius)),
             smoothing_bias: smoothing.bias(),
             smoothing_std_error: smoothing.std_error(),
             total_bias: total.bias(),
