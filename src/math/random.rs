@@ -21,6 +21,8 @@ pub enum Stream {
     Experiment = 4,
     /// Probes of where photons are worth sending.
     Guide = 5,
+    /// Photons drawn anew to see how their number in a ball varies.
+    Calibration = 6,
 }
 
 impl Stream {
