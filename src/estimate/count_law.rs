@@ -30,10 +30,7 @@ impl CountLaw {
     /// The law that passes through the variances where `k / step` and `k step` photons are expected.
     pub fn through(variances: [f64; 2], step: f64) -> Self {
         let [fewer, more] = variances;
-        Self {
-            variance: (fewer * more).sqrt(),
-            exponent: (more / fewer).ln() / (2.0 * step.ln()),
-        }
+        Self { variance: (fewer * more).sqrt(), exponent: (more / fewer).ln() / (2.0 * step.ln()) }
     }
 
     /// The c for which c / u_k has no bias, for k from 2 on. It is kept between (k - 1) / 2, below which photons lie in
