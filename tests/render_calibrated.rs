@@ -82,7 +82,8 @@ fn collisions_of_one_path_are_taken_off() {
         let lit = LitScene::prepare(scene, &Unobserved).unwrap();
         let constant = lit.report().calibration.unwrap().constant;
         // All photons within a fixed radius of the same places: without bias, and it shares the noise of the map.
-        let mut fixed = scene.clone();
+        let mut fixed = furnace(k);
+        fixed.photons.seed = scene.photons.seed;
         fixed.estimate.k = 1_000_000;
         fixed.estimate.divisor = Divisor::K;
         fixed.estimate.max_radius = Some(0.2);
