@@ -91,7 +91,7 @@ fn collisions_of_one_path_are_taken_off() {
         let (mut nearest, mut within) = (lit.reader(), fixed.reader());
         let mut random = Stream::Experiment.random(scene.photons.seed, 2);
         let mut sums = [0.0; 2];
-        for _ in 0..4000 {
+        for _ in 0..2000 {
             let place = 0.7 * uniform(&mut random).cbrt() * random_direction(&mut random);
             sums[0] += nearest.fluence(place).value.x;
             sums[1] += within.fluence(place).value.x;

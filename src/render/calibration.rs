@@ -12,8 +12,8 @@
 //! thus tell V of the whole map, at the radii that its own k-th photons have, and far more precisely than counts in
 //! balls of as many photons would.
 //!
-//! Points of a Sobol sequence depend on each other: strata of as many photons stand in for them. Measured about a point light
-//! they leave 5 % of the bias of `k`.
+//! Points of a Sobol sequence depend on each other: strata of as many photons stand in for them. They vary more than the
+//! points do, so that c comes out low: about a point light by a fifth of the bias of `k`.
 
 use std::num::NonZeroUsize;
 
