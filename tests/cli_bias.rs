@@ -68,6 +68,9 @@ fn every_figure_of_the_thesis_is_drawn() {
         assert!(names.contains(&name), "{name}");
     }
     assert_eq!(names.iter().filter(|name| name.starts_with("4.")).count(), 18);
+    for name in ["emission", "emission-divisors", "jittered-divisors"] {
+        assert!(names.contains(&name), "{name}");
+    }
     for figure in &figures {
         let svg = figure.to_svg().unwrap();
         assert!(svg.len() > 2000 && !svg.contains("NaN"), "{}", figure.name);
@@ -84,5 +87,8 @@ fn every_figure_of_the_thesis_is_drawn() {
     assert!(verdict("3-D order: error below 20 %").finding.contains("+20.19 % at k = 3"));
     assert!(verdict("3-D basic: error below 4 %").holds);
     assert!(!verdict("smallest error").holds);
-    assert!(report(&studies).contains("| k-1/2 in 3-D basic: error below 4 % | yes |"));
+    let report = report(&studies);
+    assert!(report.contains("| 3-D jittered cells | 10 | 9.2"), "{report}");
+    assert!(report.contains("| random emission | 100 | 9"), "{report}");
+    assert!(report.contains("| k-1/2 in 3-D basic: error below 4 % | yes |"));
 }

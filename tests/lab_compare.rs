@@ -52,6 +52,13 @@ fn biases_are_those_of_the_laws() {
         let difference = (stratified.intrinsic_bias - stratified.law_bias).abs();
         let allowed = 3.0 * error + 0.05 * stratified.law_bias;
         assert!(difference < allowed, "{stratified:?}");
+        // The maps of one half calibrate the other.
+        for row in [random, stratified] {
+            let left = row.intrinsic_bias_calibrated.abs();
+            assert!(left < 0.1 * row.intrinsic_bias + 3.0 * row.std_error, "{row:?}");
+        }
+        assert!((random.calibrated_k - (k as f64 - 1.0)).abs() < 0.05, "{random:?}");
+        assert!(stratified.calibrated_removed > 0.9 || k < 10, "{stratified:?}");
         assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.3), "{stratified:?}");
 
         for row in [random, stratified] {

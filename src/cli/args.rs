@@ -116,8 +116,8 @@ pub struct RenderArguments {
     #[arg(long, value_name = "K", value_parser = parse_count)]
     pub k: Option<u64>,
 
-    /// What the k nearest photons count as [default: estimate.divisor of the scene]
-    #[arg(long, value_name = "D", value_parser = PossibleValuesParser::new(["k", "k-1", "k-1/2"]))]
+    /// What the k nearest photons count as; `calibrated` measures what leaves no bias [default: estimate.divisor of the scene]
+    #[arg(long, value_name = "D", value_parser = PossibleValuesParser::new(["k", "k-1", "k-1/2", "calibrated"]))]
     pub divisor: Option<String>,
 
     /// How photons are sampled at the lights [default: photons.emission of the scene]

@@ -125,8 +125,14 @@ impl<'a> Emission<'a> {
     /// Photon `index`, below [`Emission::count`]. `None` where the light sends nothing along the sample,
     /// as outside a spot's cone: the photon counts as emitted with no power.
     pub fn photon(&self, index: u64) -> Option<EmittedPhoton> {
+        self.redrawn(index, self.seed)
+    }
+
+    /// Photon `index` with the random numbers of another seed: from the same stratum, and otherwise independent. The
+    /// points of a Sobol sequence stay where they are.
+    pub fn redrawn(&self, index: u64, seed: u64) -> Option<EmittedPhoton> {
         let light = self.lights.iter().rev().find(|light| light.first <= index)?;
-        let mut random = Stream::Photon.random(self.seed, index);
+        let mut random = Stream::Photon.random(seed, index);
         let sample = light.sampler.sample(index - light.first, &mut random);
         // The dimensions that lead to the ray come first, then the flight.
         let [a, b, c, d, e] = sample;

@@ -23,6 +23,8 @@ pub enum Stream {
     Guide = 5,
     /// Paths of the reference path tracer.
     Reference = 6,
+    /// Photons drawn anew to see how their number in a ball varies.
+    Calibration = 7,
 }
 
 impl Stream {

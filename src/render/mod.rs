@@ -3,6 +3,7 @@
 //! [`LitMedium`] is a medium with its photon map, ready to be read along any ray: the film is made of such
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
+mod calibration;
 mod distances;
 mod emitted_light;
 mod film_pass;
@@ -16,6 +17,7 @@ mod report;
 mod shadow;
 mod single_scatter;
 
+pub use calibration::Calibration;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};

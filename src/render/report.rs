@@ -1,5 +1,6 @@
 //! Figures of a render.
 
+use crate::render::Calibration;
 use crate::trace::PowerBalance;
 
 /// Figures of a render, summed over its passes.
@@ -15,6 +16,8 @@ pub struct RenderReport {
     pub power: PowerBalance,
     /// Time of each stage \[s\].
     pub seconds: StageSeconds,
+    /// The numerator of estimates, where it is measured: before the first pass is read, and for all of them.
+    pub calibration: Option<Calibration>,
     /// Passes completed.
     pub passes_done: u32,
 }
@@ -28,4 +31,6 @@ pub struct StageSeconds {
     pub build: f64,
     /// Reading it along the camera's rays.
     pub gather: f64,
+    /// Measuring the numerator of estimates.
+    pub calibrate: f64,
 }

@@ -89,6 +89,22 @@ pub fn trace_photons<E: Extinction>(
     traced
 }
 
+/// Traces single photons: what each leaves behind, path by path. A photon that is not sent leaves nothing.
+pub fn trace_paths<E: Extinction>(
+    emitted: impl Iterator<Item = Option<EmittedPhoton>>,
+    medium: &Medium,
+    extinction: &E,
+    frame: MapFrame,
+    settings: TraceSettings,
+) -> Vec<Vec<Photon>> {
+    let mut path = Path::new(medium, extinction, frame, settings);
+    let trace = |photon: Option<EmittedPhoton>| {
+        photon.into_iter().for_each(|photon| path.follow(photon));
+        std::mem::take(&mut path.photons)
+    };
+    emitted.map(trace).collect()
+}
+
 /// The paths of one share of the photons.
 struct Path<'a, E> {
     medium: &'a Medium,

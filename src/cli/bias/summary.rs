@@ -10,7 +10,7 @@ const SHOWN: usize = 8;
 /// The table, and what was left out of it.
 pub fn of(table: &BiasTable) -> String {
     let mut text = format!(
-        "{:<23}{:<10}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}\n",
+        "{:<23}{:<11}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}\n",
         "model", "divisor", "k", "exact bias", "sd", "measured bias", "z", "efficiency"
     );
     let mut left_out = 0;
@@ -61,7 +61,7 @@ fn line(row: &BiasRow) -> String {
     let deviation = row.exact_variance.or(row.measured_variance).map(f64::sqrt);
     let z = row.z.map_or("-".into(), |z| format!("{z:+.1}"));
     format!(
-        "{:<23}{:<10}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}",
+        "{:<23}{:<11}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}",
         row.model,
         row.divisor,
         row.k,

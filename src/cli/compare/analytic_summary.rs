@@ -19,12 +19,13 @@ pub fn of(table: &CompareTable) -> String {
     }
     let _ = writeln!(
         text,
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         "emission",
         "k",
         "intrinsic bias",
         "k-1/2",
         "k-1",
+        "calibr.",
         "law",
         "by count",
         "reduction",
@@ -45,7 +46,8 @@ pub fn of(table: &CompareTable) -> String {
     for saving in &table.savings {
         let _ = writeln!(text, "{}", saving_line(saving));
     }
-    text + "law: 1/(k-1), or of one photon a cubic cell; by count: from the variance of photon counts in these maps;\n\
+    text + "calibr.: with the constant that photon counts of the other half of the maps say;\n\
+            law: 1/(k-1), or of one photon a cubic cell; by count: from the variance of photon counts in these maps;\n\
             photons: what random emission needs for the same squared error of k/u in the same ball, over what this one needs;\n\
             efficiency: 1 / (squared error x processor time of a run [s])\n"
 }
@@ -53,12 +55,13 @@ pub fn of(table: &CompareTable) -> String {
 fn line(row: &CompareRow) -> String {
     let percent = |value: f64| format!("{:+.3}", 100.0 * value);
     format!(
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         row.emission,
         row.k,
         percent_with_error(row.intrinsic_bias, row.std_error),
         percent(row.intrinsic_bias_k_minus_half),
         percent(row.intrinsic_bias_k_minus_1),
+        percent(row.intrinsic_bias_calibrated),
         percent(row.law_bias),
         percent(row.count_law_bias),
         format!("{:.1} +- {:.1}", 100.0 * row.reduction, 100.0 * row.reduction_std_error),
