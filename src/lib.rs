@@ -76,3 +76,4 @@ pub mod medium;
 pub mod render;
 pub mod scene;
 pub mod trace;
+pub mod validate;

@@ -9,7 +9,14 @@ use photonvdb::lab::LabError;
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
+use photonvdb::validate::ValidateError;
 use thiserror::Error;
+
+/// Bad input or usage, as clap's own errors.
+const BAD_INPUT: u8 = 2;
+
+/// A check asked for did not hold.
+const CHECK_FAILED: u8 = 1;
 
 /// Why a command could not be carried out.
 #[derive(Debug, Error)]
@@ -34,6 +41,10 @@ pub enum CliError {
     Render(#[from] RenderError),
     #[error(transparent)]
     Lab(#[from] LabError),
+    #[error(transparent)]
+    Validate(#[from] ValidateError),
+    #[error("{failed} of {count} checks failed")]
+    ValidationFailed { failed: usize, count: usize },
     #[error(
         "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
     )]
@@ -50,4 +61,14 @@ pub enum CliError {
     Interrupt(#[from] ctrlc::Error),
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
+}
+
+impl CliError {
+    /// What the process ends with: 1 where a check asked for did not hold, else 2.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::ValidationFailed { .. } => CHECK_FAILED,
+            _ => BAD_INPUT,
+        }
+    }
 }
