@@ -26,7 +26,7 @@ fn along_ray(extent: Extent, row: &AirlightRay) -> Check<'_> {
         let mut scene = scene(medium, vec![one_watt(DVec3::from_array(row.light))], batch)?;
         scene.photons.count = 1;
         // The second measurement takes more.
-        scene.render.light_samples = extent.pick(512, 4096) * batch.count as usize;
+        scene.render.light_samples = extent.pick(2048, 4096) * batch.count as usize;
         let direction = DVec3::from_array(row.dir_unnormalised).normalize();
         let ray = Ray::new(DVec3::from_array(row.origin), direction);
         let lit = LitScene::prepare(&scene, &Unobserved)?;

@@ -83,7 +83,17 @@ impl Cloud {
 
     /// The cloud in the world.
     pub fn extinction(&self, density_scale: f64) -> Result<GridExtinction, ValidateError> {
-        extinction(&self.grid, DAffine3::from_scale(DVec3::splat(Self::EDGE)), density_scale)
+        self.extinction_at(DAffine3::IDENTITY, density_scale)
+    }
+
+    /// The cloud in a world that `place` carries it to.
+    pub fn extinction_at(
+        &self,
+        place: DAffine3,
+        density_scale: f64,
+    ) -> Result<GridExtinction, ValidateError> {
+        let voxels = DAffine3::from_scale(DVec3::splat(Self::EDGE));
+        extinction(&self.grid, place * voxels, density_scale)
     }
 
     /// Integral of the density over its bounds: trilinear interpolation spreads each voxel over one voxel's volume.

@@ -40,9 +40,9 @@ pub(super) fn exact_rows() -> Result<Vec<Row>, ValidateError> {
         let medium = fog(ball(1.0), 3.0, 1.0, 0.5);
         let scene = scene(medium, vec![one_watt(light)], Batch { seed: 2, count: 20_000 })?;
         let balance = trace(&scene).balance;
-        let entered = if exact == 0.0 { balance.emitted.x } else { 0.0 };
-        let crossings = balance.escaped.x - entered;
-        let name = format!("E15, light {name}: net crossings of a ball, albedo 1");
+        let entered = if exact == 0.0 { 1.0 } else { 0.0 };
+        let crossings = balance.escaped.x / balance.emitted.x - entered;
+        let name = format!("E15, light {name}: net crossings of a ball a photon, albedo 1");
         rows.push(Row::exact(GROUP, name, exact, crossings, 1e-12));
     }
     Ok(rows)

@@ -93,9 +93,9 @@ fn by_order<'a>(extent: Extent, truth: &BTreeMap<String, BTreeMap<String, f64>>)
     let count = extent.pick(10_000, 100_000);
     let mut quantities = Vec::new();
     let mut places: Vec<(f64, u32)> = Vec::new();
-    for (radius, orders) in truth {
-        for (order, exact) in orders {
-            let (Ok(r), Ok(order)) = (radius.parse(), order.parse()) else { continue };
+    for (r, orders) in numbers(truth) {
+        for (order, exact) in numbers(orders) {
+            let order = order as u32;
             let name = format!("albedo 1, fluence at {r} of order {order}");
             quantities.push(fluence_at(name, r, *exact, count));
             places.push((r, order));
@@ -156,6 +156,10 @@ fn fluence(radius: f64, collisions: impl Iterator<Item = (f64, f64)>) -> f64 {
     density / (4.0 * PI * radius * radius)
 }
 
-fn numbers(table: &BTreeMap<String, f64>) -> Vec<(f64, f64)> {
-    table.iter().filter_map(|(key, value)| Some((key.parse().ok()?, *value))).collect()
+/// A table whose keys are numbers, in their order.
+fn numbers<T>(table: &BTreeMap<String, T>) -> Vec<(f64, &T)> {
+    let mut numbers: Vec<(f64, &T)> =
+        table.iter().filter_map(|(key, value)| Some((key.parse().ok()?, value))).collect();
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    numbers
 }

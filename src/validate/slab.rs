@@ -16,15 +16,16 @@ use crate::light::{Light, QuadLight};
 use crate::math::{DVec3, Ray, Rgb, Stream};
 use crate::medium::{Bounds, Extinction, MediumExtinction};
 use crate::scene::Scene;
+use crate::trace::Photon;
 
 const GROUP: &str = "slab";
 
-/// Half-width of the box.
+/// Half-width of the box in mean free paths.
 const HALF_WIDTH: f64 = 1e6;
 
 /// How light falls in.
 #[derive(Clone, Copy, Debug)]
-enum Incidence {
+pub(super) enum Incidence {
     Normal,
     Diffuse,
 }
@@ -53,25 +54,41 @@ impl Incidence {
     }
 }
 
+/// A slab of fog.
 #[derive(Clone, Copy, Debug)]
-struct Slab {
-    albedo: f64,
-    g: f64,
-    thickness: f64,
+pub(super) struct Slab {
+    /// \[1/m\]
+    pub sigma_t: f64,
+    /// sigma_s / sigma_t.
+    pub albedo: f64,
+    /// Mean cosine.
+    pub g: f64,
+    /// Optical thickness.
+    pub tau: f64,
 }
 
 impl Slab {
     /// A thickness that lets nothing pass stands in for one without end: 20 diffusion lengths or more.
     fn new(albedo: f64, g: f64, tau: Option<f64>) -> Self {
         let decay = (3.0 * (1.0 - albedo) * (1.0 - albedo * g)).sqrt().min(1.0);
-        Self { albedo, g, thickness: tau.unwrap_or(25.0 / decay + 20.0) }
+        Self { sigma_t: 1.0, albedo, g, tau: tau.unwrap_or(25.0 / decay + 20.0) }
     }
 
     fn scene(self, incidence: Incidence, batch: Batch) -> Result<Scene, ValidateError> {
-        let min = DVec3::new(-HALF_WIDTH, -HALF_WIDTH, 0.0);
-        let max = DVec3::new(HALF_WIDTH, HALF_WIDTH, self.thickness);
-        let medium = fog(Bounds::Box { min, max }, 1.0, self.albedo, self.g);
+        let half_width = HALF_WIDTH / self.sigma_t;
+        let min = DVec3::new(-half_width, -half_width, 0.0);
+        let max = DVec3::new(half_width, half_width, self.tau / self.sigma_t);
+        let medium = fog(Bounds::Box { min, max }, self.sigma_t, self.albedo, self.g);
         scene(medium, vec![incidence.light()], batch)
+    }
+
+    /// Shares of the light that are reflected, that pass, and that escape altogether.
+    pub fn shares(self, incidence: Incidence, batch: Batch) -> Result<Vec<f64>, ValidateError> {
+        let scene = self.scene(incidence, batch)?;
+        let traced = trace(&scene);
+        let (reflected, scattered) = next_flights(&scene, self, &traced.photons, batch.seed);
+        let passed = scattered + unscattered(&scene);
+        Ok(vec![reflected, passed, traced.balance.escaped.x])
     }
 
     fn name(self, tau: Option<f64>, incidence: Incidence) -> String {
@@ -106,12 +123,12 @@ fn shares(extent: Extent, row: &SlabTruth, incidence: Incidence) -> Check<'_> {
     let collisions = if row.albedo < 1.0 {
         (1.0 - reflected - passed) / (1.0 - row.albedo)
     } else {
-        2.0 * slab.thickness
+        2.0 * slab.tau
     };
     let budget = extent.pick(4000.0, 2000.0) * (30.0 / collisions.max(30.0));
     let count = (budget as u64).max(100);
     let name = slab.name(row.tau, incidence);
-    let scattered_on = passed - (-slab.thickness).exp();
+    let scattered_on = passed - (-slab.tau).exp();
     let is_seen = |share: f64| if share > 0.0 { Check::total(count) * share * 4.0 } else { 1e9 };
     let quantities = vec![
         Quantity::new(format!("{name}: reflected"), reflected).seen_by(is_seen(reflected)),
@@ -122,20 +139,14 @@ fn shares(extent: Extent, row: &SlabTruth, incidence: Incidence) -> Check<'_> {
         Quantity::new(format!("{name}: escaped"), reflected + passed)
             .seen_by(is_seen(reflected + passed)),
     ];
-    Check::new(GROUP, quantities, count, move |batch| {
-        let scene = slab.scene(incidence, batch)?;
-        let traced = trace(&scene);
-        let (reflected, scattered) = next_flights(&scene, slab, &traced.photons, batch.seed);
-        let passed = scattered + unscattered(&scene);
-        Ok(vec![reflected, passed, traced.balance.escaped.x])
-    })
+    Check::new(GROUP, quantities, count, move |batch| slab.shares(incidence, batch))
 }
 
 /// Power that leaves below and above after each collision, without another.
 fn next_flights(
     scene: &Scene,
     slab: Slab,
-    photons: &[crate::trace::Photon],
+    photons: &[Photon],
     seed: u64,
 ) -> (f64, f64) {
     let MediumExtinction::Uniform(extinction) = &scene.medium.extinction else { return (0.0, 0.0) };
