@@ -18,6 +18,7 @@
 //! | [`estimate`] | the map | [`Estimate`](estimate::Estimate): power density, fluence; light scattered towards a direction |
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
 //! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |
+//! | [`validate`] | exact answers of radiative transfer | what the renderer measures of them |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
 //! [`medium`] knows how light is attenuated and scattered, and reads and writes OpenVDB files ([`medium::vdb`]); [`light`] knows

@@ -13,6 +13,9 @@ use crate::render::{LitScene, Unobserved};
 
 const GROUP: &str = "ball";
 
+/// Thickness of the shell by which fluence on the surface is read, over the radius.
+const SURFACE_SHELL: f64 = 0.01;
+
 /// Places asked for fluence at each radius, a batch.
 const PLACES: usize = 40;
 
@@ -32,14 +35,14 @@ fn width(radius: f64, ball_radius: f64) -> Option<f64> {
 }
 
 fn in_shells(extent: Extent, row: &BallTruth) -> Check<'_> {
-    let count = extent.pick(4000, 40_000);
+    let count = extent.pick(4000, 20_000);
     let mut quantities = vec![
         Quantity::new(name(row, "collisions"), row.mean_collisions),
         Quantity::new(name(row, "share that escapes"), row.escape),
     ];
     for (r, phi) in row.r.iter().zip(&row.phi) {
         // On the surface the fluence falls with a logarithm.
-        let bias = if *r < row.radius { 2e-3 } else { 1e-2 };
+        let bias = if *r < row.radius { 2e-3 } else { 1.5e-2 };
         quantities.push(Quantity::new(name(row, &format!("fluence at {r}")), *phi).within(bias));
     }
     Check::new(GROUP, quantities, count, move |batch| {
@@ -51,7 +54,7 @@ fn in_shells(extent: Extent, row: &BallTruth) -> Check<'_> {
         figures.extend(row.r.iter().map(|&r| {
             let weigh = |t: f64| match width(r, row.radius) {
                 Some(width) => centered(t, r, width),
-                None => at_end((r - t).max(0.0), 0.04 * r),
+                None => at_end((r - t).max(0.0), SURFACE_SHELL * r),
             };
             let photons = traced.photons.iter();
             let sum: f64 = photons
@@ -66,7 +69,7 @@ fn in_shells(extent: Extent, row: &BallTruth) -> Check<'_> {
 /// Fluence as the estimator reads it. Over a ball of radius h the constant kernel adds h^2 / 10 of the Laplacian, which here
 /// is below (1 + 2 / r + 2 / r^2) phi.
 fn by_map(extent: Extent, row: &BallTruth) -> Check<'_> {
-    let count = extent.pick(10_000, 100_000);
+    let count = extent.pick(10_000, 40_000);
     let inner = |r: f64| r > 0.2 * row.radius && r < 0.8 * row.radius;
     let rows = row.r.iter().zip(&row.phi).filter(move |(r, _)| inner(**r));
     let places: Vec<f64> = rows.clone().map(|(r, _)| *r).collect();

@@ -28,7 +28,8 @@ const RAYS: usize = 40;
 
 pub(super) fn checks<'a>(extent: Extent) -> Vec<Check<'a>> {
     let box_of_fog: fn(f64) -> Result<Medium, ValidateError> = |a| Ok(fog(CUBE, 2.0, a, 0.3));
-    let ball_of_fog: fn(f64) -> Result<Medium, ValidateError> = |a| Ok(fog(ball(1.0), 2.0, a, 0.85));
+    let ball_of_fog: fn(f64) -> Result<Medium, ValidateError> =
+        |a| Ok(fog(ball(1.0), 2.0, a, 0.85));
     let cloud: fn(f64) -> Result<Medium, ValidateError> =
         |a| Ok(smoke(Cloud::new().extinction(6.0)?, a, 0.3));
     let media = [("box, g 0.3", box_of_fog), ("ball, g 0.85", ball_of_fog), ("cloud", cloud)];
@@ -53,7 +54,7 @@ fn power_density<'a>(extent: Extent) -> Check<'a> {
         let of = Quantity::new(format!("E6: power density {name}"), 4.0 * PI * sigma_t);
         of.within(CLUSTER_BIAS)
     });
-    Check::new(GROUP, quantities.to_vec(), extent.pick(5000, 50_000), move |batch| {
+    Check::new(GROUP, quantities.to_vec(), extent.pick(5000, 20_000), move |batch| {
         let mut scene = scene(fog(CUBE, sigma_t, 1.0, 0.5), vec![white_sky()], batch)?;
         scene.render.photons_only = true;
         scene.estimate.k = 50;

@@ -34,7 +34,7 @@ pub(super) fn checks(extent: Extent, truth: &Truth) -> Vec<Check<'_>> {
 
 fn glowing(extent: Extent, row: &GlowingBall) -> Check<'_> {
     let GlowingBall { albedo, radius, impacts, radiance } = row;
-    let count = extent.pick(20_000, 100_000);
+    let count = extent.pick(15_000, 60_000);
     let name = |impact: &f64| format!("ball, albedo {albedo}, radius {radius}, b/R {impact}");
     let quantities = impacts
         .iter()
@@ -64,13 +64,15 @@ fn glowing(extent: Extent, row: &GlowingBall) -> Check<'_> {
 /// Light scattered once along a ray that starts inside a medium without end, and all of it where photons come in numbers.
 fn around(extent: Extent, row: &GlowSeen) -> Check<'_> {
     let &GlowSeen { albedo, camera_distance, impact, total, single } = row;
-    let count = extent.pick(10_000, 50_000);
+    // The kernel's radius, and so its bias, is that of the collisions, of which there are 1 / (1 - albedo) a photon.
+    let collisions = extent.pick(10_000, 50_000);
+    let count = ((1.0 - albedo) * collisions as f64) as u64 + 1;
     let name = format!("infinite, albedo {albedo}, from {camera_distance}, impact {impact}");
     let quantities = vec![
         Quantity::new(format!("{name}: single"), single),
         // Along the way from far away photons are few, and the kernel wide.
         Quantity::new(format!("{name}: all"), total)
-            .within(1.5 * bias(0.0, count))
+            .within(1.5 * bias(0.0, collisions))
             .seen_by(if camera_distance > 5.0 { 0.0 } else { f64::INFINITY }),
     ];
     let along = (camera_distance * camera_distance - impact * impact).max(0.0).sqrt();

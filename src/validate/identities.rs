@@ -59,7 +59,9 @@ pub(super) fn checks<'a>(extent: Extent) -> Vec<Check<'a>> {
         ("box 1x2x3", oblong, 12.0 / 11.0, 22.0),
         ("ball 0.7", ball(0.7), 4.0 * 0.7 / 3.0, 4.0 * PI * 0.49),
     ];
-    checks.extend(shapes.map(|(name, bounds, chord, area)| chords(extent, name, bounds, chord, area)));
+    checks.extend(
+        shapes.map(|(name, bounds, chord, area)| chords(extent, name, bounds, chord, area)),
+    );
     checks.extend([0.1, 1.0, 5.0].map(|depth| uncollided(extent, depth)));
     checks
 }
@@ -74,7 +76,7 @@ fn collisions<'a>(extent: Extent, albedo: f64, g: f64) -> Check<'a> {
         Quantity::new(name("E13: sum of z"), 1.0 / (lost * (1.0 - albedo * g))),
         Quantity::new(name("E13: sum of r^2"), 2.0 / (lost * lost * (1.0 - albedo * g))),
     ];
-    Check::new(GROUP, quantities, extent.pick(4000, 40_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(4000, 20_000), move |batch| {
         let medium = fog(Bounds::Infinite, 1.0, albedo, g);
         let scene = scene(medium, vec![needle(DVec3::ZERO, DVec3::Z, 1e-5)], batch)?;
         let frame = frame(&scene);
@@ -103,7 +105,7 @@ fn collisions<'a>(extent: Extent, albedo: f64, g: f64) -> Check<'a> {
 fn absorption<'a>(extent: Extent) -> Check<'a> {
     let name = "E3: 1 + absorbed - (1 - albedo) collided";
     let quantities = vec![Quantity::new(name, 1.0)];
-    Check::new(GROUP, quantities, extent.pick(4000, 40_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(4000, 20_000), move |batch| {
         let light = one_watt(DVec3::new(0.3, 0.5, 0.2));
         let scene = scene(fog(CUBE, 1.5, 0.8, 0.5), vec![light], batch)?;
         let traced = trace(&scene);
@@ -124,7 +126,8 @@ fn chords<'a>(
         Quantity::new(format!("E4, {name}: mean chord"), chord),
         Quantity::new(format!("E5, {name}: collisions"), chord * sigma_t),
     ];
-    let octant = |n: usize| Quantity::new(format!("E5, {name}: in octant {n}"), chord * sigma_t / 8.0);
+    let octant =
+        |n: usize| Quantity::new(format!("E5, {name}: in octant {n}"), chord * sigma_t / 8.0);
     quantities.extend((0..8).map(octant));
     let middle = bounds.enclosing_ball().map_or(DVec3::ZERO, |ball| ball.center);
     Check::new(GROUP, quantities, extent.pick(2000, 20_000), move |batch| {
@@ -171,7 +174,7 @@ fn reciprocity<'a>(extent: Extent) -> Check<'a> {
     let (sigma_t, albedo, g) = (2.0, 0.8, 0.4);
     let name = "E9: absorbed under a sky - 4V/S sigma_a times the share of even light that escapes";
     let quantities = vec![Quantity::new(name, 0.0)];
-    Check::new(GROUP, quantities, extent.pick(3000, 40_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(3000, 20_000), move |batch| {
         let medium = || fog(ball(1.0), sigma_t, albedo, g);
         let lit = trace(&scene(medium(), vec![white_sky()], batch)?);
         let absorbed = (1.0 - albedo) * collided(&lit) / (4.0 * PI * PI);
@@ -199,7 +202,7 @@ fn uncollided<'a>(extent: Extent, depth: f64) -> Check<'a> {
         Quantity::new(format!("E10, radius {t}: passes without a collision"), through),
         Quantity::new(format!("E11, radius {t}: escapes without a collision"), out),
     ];
-    Check::new(GROUP, quantities, extent.pick(3000, 40_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(3000, 20_000), move |batch| {
         let medium = || fog(ball(1.0), depth, 0.0, 0.0);
         let lit = trace(&scene(medium(), vec![white_sky()], batch)?);
         let passed = 1.0 - collided(&lit) / (4.0 * PI * PI);
@@ -218,7 +221,7 @@ fn flights<'a>(extent: Extent, g: f64) -> Check<'a> {
         quantities.push(Quantity::new(format!("E12, g {g}: mean z after {n} flights"), height));
         quantities.push(Quantity::new(format!("E12, g {g}: mean r^2 after {n} flights"), square));
     }
-    Check::new(GROUP, quantities, extent.pick(4000, 40_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(4000, 20_000), move |batch| {
         let medium = fog(Bounds::Infinite, 1.0, 1.0, g);
         let mut scene = scene(medium, vec![needle(DVec3::ZERO, DVec3::Z, 1e-5)], batch)?;
         scene.photons.max_order = flights as u32 - 1;
@@ -238,7 +241,7 @@ fn flights<'a>(extent: Extent, g: f64) -> Check<'a> {
 fn legendre<'a>(extent: Extent, g: f64) -> Check<'a> {
     let quantity = |l: i32| Quantity::new(format!("E14, g {g}: mean of P_{l}"), g.powi(l));
     let quantities = (1..=3).map(quantity).collect();
-    Check::new(GROUP, quantities, extent.pick(4000, 100_000), move |batch| {
+    Check::new(GROUP, quantities, extent.pick(4000, 50_000), move |batch| {
         let mut random = Stream::Experiment.random(batch.seed, 0);
         let phase = Phase::HenyeyGreenstein { g };
         let axis = DVec3::new(0.48, -0.6, 0.64);

@@ -54,7 +54,7 @@ fn by_radius<'a>(
     let count = if is_conservative {
         200
     } else {
-        ((extent.pick(2e4, 1e5) * (1.0 - albedo)) as u64).max(400)
+        ((extent.pick(2e4, 5e4) * (1.0 - albedo)) as u64).max(400)
     };
     // An endless medium holds more than its ball by the fluence that comes back from beyond, which is even.
     let (bounds, beyond) = match is_conservative {
@@ -90,7 +90,7 @@ fn by_radius<'a>(
 
 /// Fluence of light scattered so many times.
 fn by_order<'a>(extent: Extent, truth: &BTreeMap<String, BTreeMap<String, f64>>) -> Check<'a> {
-    let count = extent.pick(10_000, 100_000);
+    let count = extent.pick(5000, 50_000);
     let mut quantities = Vec::new();
     let mut places: Vec<(f64, u32)> = Vec::new();
     for (r, orders) in numbers(truth) {
@@ -114,7 +114,7 @@ fn by_order<'a>(extent: Extent, truth: &BTreeMap<String, BTreeMap<String, f64>>)
 
 fn anisotropic(extent: Extent, row: &FluenceByRadius) -> Check<'_> {
     let FluenceByRadius { albedo, g, r, phi } = row;
-    let count = extent.pick(4000, 40_000);
+    let count = extent.pick(3000, 20_000);
     let name = |r: &f64| format!("albedo {albedo}, g {g}, fluence at {r}");
     let at = r.iter().zip(phi).map(|(r, phi)| fluence_at(name(r), *r, *phi, count));
     Check::new(GROUP, at.collect(), count, move |batch| {

@@ -125,7 +125,7 @@ fn shares(extent: Extent, row: &SlabTruth, incidence: Incidence) -> Check<'_> {
     } else {
         2.0 * slab.tau
     };
-    let budget = extent.pick(4000.0, 2000.0) * (30.0 / collisions.max(30.0));
+    let budget = extent.pick(2000.0, 1000.0) * (30.0 / collisions.max(30.0));
     let count = (budget as u64).max(100);
     let name = slab.name(row.tau, incidence);
     let scattered_on = passed - (-slab.tau).exp();
@@ -143,12 +143,7 @@ fn shares(extent: Extent, row: &SlabTruth, incidence: Incidence) -> Check<'_> {
 }
 
 /// Power that leaves below and above after each collision, without another.
-fn next_flights(
-    scene: &Scene,
-    slab: Slab,
-    photons: &[Photon],
-    seed: u64,
-) -> (f64, f64) {
+fn next_flights(scene: &Scene, slab: Slab, photons: &[Photon], seed: u64) -> (f64, f64) {
     let MediumExtinction::Uniform(extinction) = &scene.medium.extinction else { return (0.0, 0.0) };
     let frame = frame(scene);
     let mut random = Stream::Experiment.random(seed, 1);
@@ -180,7 +175,7 @@ fn unscattered(scene: &Scene) -> f64 {
 /// Fluence by depth: collisions, for sigma_t is 1.
 fn by_depth(extent: Extent, row: &SlabFluence, incidence: Incidence) -> Check<'_> {
     let slab = Slab::new(row.albedo, row.g, row.tau);
-    let count = extent.pick(4000, 20_000);
+    let count = extent.pick(3000, 10_000);
     let fluences = match incidence {
         Incidence::Normal => &row.phi_normal,
         Incidence::Diffuse => &row.phi_diffuse,

@@ -60,13 +60,8 @@ pub(super) fn one_watt(position: DVec3) -> Light {
 
 /// A needle of light of 1 W.
 pub(super) fn needle(position: DVec3, axis: DVec3, angle: f64) -> Light {
-    let spot = SpotLight {
-        position,
-        axis,
-        intensity: Rgb::ONE,
-        cone_angle: angle,
-        falloff_angle: angle,
-    };
+    let spot =
+        SpotLight { position, axis, intensity: Rgb::ONE, cone_angle: angle, falloff_angle: angle };
     let intensity = Rgb::splat(1.0 / spot.effective_solid_angle());
     Light::Spot(SpotLight { intensity, ..spot })
 }

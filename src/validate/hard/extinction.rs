@@ -4,7 +4,9 @@ use super::super::check::{Check, Quantity};
 use super::super::error::ValidateError;
 use super::super::report::Row;
 use super::super::slab::{Incidence, Slab};
-use super::super::stage::{CUBE, ball, collided, fog, one_watt, passing_ray, scene, trace, white_sky};
+use super::super::stage::{
+    CUBE, ball, collided, fog, one_watt, passing_ray, scene, trace, white_sky,
+};
 use super::{FEW, noisy};
 use crate::math::{DVec3, Ray, Rgb, Span, Stream};
 use crate::medium::{Extinction, Flight, UniformExtinction};
@@ -67,7 +69,10 @@ fn enormous() -> Result<Vec<Row>, ValidateError> {
     // Chandrasekhar's H function: the reflectance of a half-space of albedo 0.9.
     let slab = Slab { sigma_t: 1e4, albedo: 0.9, g: 0.0, tau: 1e4 };
     let quantities = vec![
-        Quantity::new("slab of 1 m, albedo 0.9: reflected as by a half-space", 0.414_947_479_130_817),
+        Quantity::new(
+            "slab of 1 m, albedo 0.9: reflected as by a half-space",
+            0.414_947_479_130_817,
+        ),
         Quantity::new("slab of 1 m, albedo 0.9: passed", 0.0),
     ];
     let reflection =

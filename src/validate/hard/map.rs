@@ -66,7 +66,13 @@ fn on_a_photon() -> Result<Vec<Row>, ValidateError> {
     Ok(vec![
         Row::exact(ON_PHOTON, "k = 2: radius", 0.5, two.radius, 1e-7),
         Row::exact(ON_PHOTON, "k = 2: density", 2.0 / ball(0.5), two.value.x, 1e-6),
-        Row::exact(ON_PHOTON, "k = 1: radius, in sizes of the medium, is floored", floor, one.radius, 0.0),
+        Row::exact(
+            ON_PHOTON,
+            "k = 1: radius, in sizes of the medium, is floored",
+            floor,
+            one.radius,
+            0.0,
+        ),
         Row::holds(ON_PHOTON, "k = 1: density is a number", one.value.is_finite()),
     ])
 }

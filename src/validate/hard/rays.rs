@@ -34,7 +34,12 @@ fn on_faces() -> Result<Vec<Row>, ValidateError> {
         ("on a brick edge", DVec3::new(-5.0, 8.0, 8.0), DVec3::X, 18.0),
         ("on a face of the bounds", DVec3::new(-5.0, -1.0, 5.3), DVec3::X, 18.0),
         ("on an edge of the bounds", DVec3::new(-5.0, 17.0, -1.0), DVec3::X, 18.0),
-        ("through voxel edges", DVec3::new(-3.0, -3.0, 4.0), DVec3::new(1.0, 1.0, 0.0) / root, 18.0 * root),
+        (
+            "through voxel edges",
+            DVec3::new(-3.0, -3.0, 4.0),
+            DVec3::new(1.0, 1.0, 0.0) / root,
+            18.0 * root,
+        ),
         ("through voxel corners", DVec3::splat(-3.0), DVec3::ONE / diagonal, 18.0 * diagonal),
         ("through corners, back", DVec3::splat(20.0), DVec3::NEG_ONE / diagonal, 18.0 * diagonal),
     ];

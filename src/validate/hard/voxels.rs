@@ -73,9 +73,7 @@ fn flight(name: &str, place: DAffine3, scale: f64) -> Result<Row, ValidateError>
     let (ray, span) = diagonal([0; 3], place);
     let exact = grid.invert_flight(&ray, span, Rgb::ONE, 0.5);
     let depth = match exact {
-        Flight::Collision { distance, .. } => {
-            grid.optical_depth(&ray, Span::new(0.0, distance)).x
-        }
+        Flight::Collision { distance, .. } => grid.optical_depth(&ray, Span::new(0.0, distance)).x,
         Flight::Escape { .. } => f64::NAN,
     };
     let mut random = Stream::Experiment.random(0, 0);
