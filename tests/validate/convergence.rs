@@ -57,7 +57,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 
 #[test]
 fn errors_of_the_k_nearest_fall_as_foretold() {
-    let runs = [(4_000, 160), (16_000, 80), (64_000, 40), (256_000, 20)];
+    let runs = [(4_000, 120), (16_000, 60), (64_000, 30), (256_000, 14)];
     let errors: Vec<(f64, f64, f64, f64)> = runs
         .iter()
         .map(|&(n, maps)| {

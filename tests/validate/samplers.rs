@@ -55,6 +55,9 @@ fn assert_counts(counts: &[f64], probabilities: &[f64], what: &str) {
         chi += (count - expected).powi(2) / expected;
     }
     let freedom = probabilities.iter().filter(|p| **p > 0.0).count() as f64 - 1.0;
+    if freedom == 0.0 {
+        return;
+    }
     let spread = 2.0 / (9.0 * freedom);
     let z = ((chi / freedom).cbrt() - (1.0 - spread)) / spread.sqrt();
     assert!(z < LARGEST_Z, "{what}: chi^2 {chi} for {freedom}, z {z}");
@@ -172,9 +175,7 @@ fn illumination_by_area_lights() {
         edge_v: DVec3::new(0.9, 0.1, 0.0),
         radiance: Rgb::ONE,
     };
-    let place = DVec3::new(0.3, 1.4, -0.2);
-    let facing = quad.area_normal().dot(place - quad.corner) > 0.0;
-    let place = if facing { place } else { DVec3::new(0.1, -0.3, 0.1) };
+    let place = DVec3::new(0.1, -0.3, 0.1);
     let side = 6;
     let (u, v) = (quad.edge_u / f64::from(side), quad.edge_v / f64::from(side));
     let cell = |i: i32, j: i32| quad.corner + u * f64::from(i) + v * f64::from(j);
@@ -463,9 +464,10 @@ fn emissive_cells() {
         let power = Runs::of(batches.iter().map(|batch| batch.1[number]));
         let exact = exact(number);
         power.assert_within(exact, 1e-3 * exact, &format!("power of octant {number}"));
-        // Drawn by what they emit, places are worth nearly the same.
-        assert!(power.error < 0.01 * exact, "{power:?}");
     }
+    // Drawn by what they emit, places are worth nearly the same.
+    let total = Runs::of(batches.iter().map(|batch| batch.1.iter().sum()));
+    assert!(total.error < 0.001 * total.mean, "{total:?}");
 }
 
 /// Guided places fall where their density says.
