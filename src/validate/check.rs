@@ -51,6 +51,11 @@ impl Quantity {
         Self { bias_allowed, ..self }
     }
 
+    /// The same, give or take so much.
+    pub fn give_or_take(self, bias_allowed: f64) -> Self {
+        Self { bias_allowed, ..self }
+    }
+
     /// The same, left out if no more photons are expected to tell of it than this.
     pub fn seen_by(self, expected: f64) -> Self {
         Self { is_rare: expected < 1000.0, ..self }

@@ -23,6 +23,9 @@ const GROUP: &str = "slab";
 /// Half-width of the box in mean free paths.
 const HALF_WIDTH: f64 = 1e6;
 
+/// Far below every share: what passes the thickness that stands in for none.
+const CUT_OFF: f64 = 1e-15;
+
 /// How light falls in.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Incidence {
@@ -132,10 +135,12 @@ fn shares(extent: Extent, row: &SlabTruth, incidence: Incidence) -> Check<'_> {
     let is_seen = |share: f64| if share > 0.0 { Check::total(count) * share * 4.0 } else { 1e9 };
     let quantities = vec![
         Quantity::new(format!("{name}: reflected"), reflected).seen_by(is_seen(reflected)),
-        Quantity::new(format!("{name}: passed"), passed).seen_by(match row.albedo {
-            0.0 => f64::INFINITY,
-            _ => is_seen(scattered_on.max(0.0)),
-        }),
+        Quantity::new(format!("{name}: passed"), passed).give_or_take(CUT_OFF).seen_by(
+            match row.albedo {
+                0.0 => f64::INFINITY,
+                _ => is_seen(scattered_on.max(0.0)),
+            },
+        ),
         Quantity::new(format!("{name}: escaped"), reflected + passed)
             .seen_by(is_seen(reflected + passed)),
     ];
