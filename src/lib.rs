@@ -19,6 +19,7 @@
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
 //! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |
 //! | [`reference`](mod@crate::reference) | a scene | the same image without photons, by a path tracer whose mean is exact |
+//! | [`validate`] | exact answers of radiative transfer | what the renderer measures of them |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
 //! [`medium`] knows how light is attenuated and scattered, and reads and writes OpenVDB files ([`medium::vdb`]); [`light`] knows
@@ -78,3 +79,4 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod trace;
+pub mod validate;

@@ -73,7 +73,7 @@ fn biases_are_those_of_the_laws() {
 /// Collisions of a photon between two distances, 4 pi int t^2 p dt by Simpson's rule, against transport theory.
 #[test]
 fn power_densities_add_up_to_known_collisions() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/truth/infinite.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/validate/truth/infinite.json");
     let truth: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     for (scene, albedo) in

@@ -13,6 +13,7 @@ use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
 use super::count::{parse_count, parse_resolution};
 use super::reference::args::ReferenceArguments;
+use super::validate::ValidateArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -34,8 +35,10 @@ Examples:
       What a scene needs, without rendering it.
   photonvdb convert smoke.vdb -o small.vdb --grid density --half
       One grid of an OpenVDB file, in half the space.
+  photonvdb validate
+      What the renderer measures, against exact answers.
 
-Exit codes: 0 done, 2 bad input or usage.";
+Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.";
 
 const RENDER_EXAMPLES: &str = "\
 Examples:
@@ -91,6 +94,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Write grids of a .vdb to another: some of them, cropped, smaller
     Convert(ConvertArguments),
+    /// Check what the renderer measures against exact answers
+    Validate(ValidateArguments),
 }
 
 /// `photonvdb render`

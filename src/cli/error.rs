@@ -10,7 +10,14 @@ use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::reference::ReferenceError;
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
+use photonvdb::validate::ValidateError;
 use thiserror::Error;
+
+/// Bad input or usage, as clap's own errors.
+const BAD_INPUT: u8 = 2;
+
+/// A check asked for did not hold.
+const CHECK_FAILED: u8 = 1;
 
 /// Why a command could not be carried out.
 #[derive(Debug, Error)]
@@ -37,6 +44,10 @@ pub enum CliError {
     Reference(#[from] ReferenceError),
     #[error(transparent)]
     Lab(#[from] LabError),
+    #[error(transparent)]
+    Validate(#[from] ValidateError),
+    #[error("{failed} of {count} checks failed")]
+    ValidationFailed { failed: usize, count: usize },
     #[error(
         "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
     )]
@@ -61,4 +72,14 @@ pub enum CliError {
     Interrupt(#[from] ctrlc::Error),
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
+}
+
+impl CliError {
+    /// What the process ends with: 1 where a check asked for did not hold, else 2.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::ValidationFailed { .. } => CHECK_FAILED,
+            _ => BAD_INPUT,
+        }
+    }
 }

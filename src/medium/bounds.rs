@@ -175,8 +175,10 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
             continue;
         }
         let inverse = 1.0 / direction[axis];
-        let (a, b) = ((min[axis] - origin[axis]) * inverse, (max[axis] - origin[axis]) * inverse);
-        span = span.intersect(Span::new(a.min(b), a.max(b)))?;
+        // By the sign, not by size: a box turned inside out is empty.
+        let (near, far) = if inverse > 0.0 { (min, max) } else { (max, min) };
+        let enter = (near[axis] - origin[axis]) * inverse;
+        span = span.intersect(Span::new(enter, (far[axis] - origin[axis]) * inverse))?;
     }
     Some(span)
 }

@@ -241,7 +241,7 @@ pub fn passing_ray(center: DVec3, impact: f64, far: f64, random: &mut Random) ->
 }
 
 pub fn truth(file: &str) -> serde_json::Value {
-    let path = tests().join("truth").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/validate/truth").join(file);
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
