@@ -84,8 +84,9 @@ fn measure_map(
 
     let mut estimators = DIVISORS.map(|divisor| {
         let k = NonZeroUsize::MIN.saturating_add(K - 1);
+        let constant = divisor.constant(k).unwrap_or(K as f64);
         let options =
-            EstimateOptions { k, divisor, kernel: Kernel::Constant, max_radius: f64::INFINITY };
+            EstimateOptions { k, constant, kernel: Kernel::Constant, max_radius: f64::INFINITY };
         Estimator::new(medium, &extinction, &map, options)
     });
     let mut random = Stream::Experiment.random(seed, 0);

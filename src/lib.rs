@@ -18,7 +18,8 @@
 //! | [`estimate`] | the map | [`Estimate`](estimate::Estimate): power density, fluence; light scattered towards a direction |
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
 //! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |
-//! | [`reference`] | a scene | the same image without photons, by a path tracer whose mean is exact |
+//! | [`reference`](mod@crate::reference) | a scene | the same image without photons, by a path tracer whose mean is exact |
+//! | [`validate`] | exact answers of radiative transfer | what the renderer measures of them |
 //! | [`film`] | the film | an OpenEXR image with its layers, a PNG preview |
 //!
 //! [`medium`] knows how light is attenuated and scattered, and reads and writes OpenVDB files ([`medium::vdb`]); [`light`] knows
@@ -79,3 +80,4 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod trace;
+pub mod validate;

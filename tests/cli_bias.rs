@@ -16,7 +16,7 @@ fn tables_charts_and_json_are_written() {
          --csv a.csv --json a.json --plot a.svg",
     );
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    for part in ["3d-basic", "5.361 %", "exact bias", "2000 trials"] {
+    for part in ["3d-basic", "5.361 %", "exact bias", "2000 trials", "processor time"] {
         assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
     }
     let csv = fs::read_to_string(work.path("a.csv")).unwrap();
@@ -33,6 +33,14 @@ fn tables_charts_and_json_are_written() {
     let again = "bias 3d-random 3d-basic --k 2..4,10 --trials 2000 --divisor k,k-1 --csv -";
     assert_eq!(work.run(&format!("{again} --threads 1")).stdout, csv);
     assert_ne!(work.run(&format!("{again} --seed 1")).stdout, csv);
+    let timed = work.run(&format!("{again} --timing")).stdout;
+    let header = timed.lines().next().unwrap();
+    assert!(header.ends_with(",seconds,efficiency"), "{header}");
+    for (plain, timed) in csv.lines().zip(timed.lines()).skip(1) {
+        let times = timed.strip_prefix(plain).unwrap().split(',').skip(1);
+        let times: Vec<f64> = times.map(|time| time.parse().unwrap()).collect();
+        assert!(times.len() == 2 && times.iter().all(|&time| time > 0.0), "{timed}");
+    }
 }
 
 #[test]
@@ -60,6 +68,9 @@ fn every_figure_of_the_thesis_is_drawn() {
         assert!(names.contains(&name), "{name}");
     }
     assert_eq!(names.iter().filter(|name| name.starts_with("4.")).count(), 18);
+    for name in ["emission", "emission-divisors", "jittered-divisors"] {
+        assert!(names.contains(&name), "{name}");
+    }
     for figure in &figures {
         let svg = figure.to_svg().unwrap();
         assert!(svg.len() > 2000 && !svg.contains("NaN"), "{}", figure.name);
@@ -76,5 +87,8 @@ fn every_figure_of_the_thesis_is_drawn() {
     assert!(verdict("3-D order: error below 20 %").finding.contains("+20.19 % at k = 3"));
     assert!(verdict("3-D basic: error below 4 %").holds);
     assert!(!verdict("smallest error").holds);
-    assert!(report(&studies).contains("| k-1/2 in 3-D basic: error below 4 % | yes |"));
+    let report = report(&studies);
+    assert!(report.contains("| 3-D jittered cells | 10 | 9.2"), "{report}");
+    assert!(report.contains("| random emission | 100 | 9"), "{report}");
+    assert!(report.contains("| k-1/2 in 3-D basic: error below 4 % | yes |"));
 }

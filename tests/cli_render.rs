@@ -52,6 +52,35 @@ fn a_render_writes_image_preview_and_report() {
     }
 }
 
+/// The constant is measured, told to people and to programs, and part of what the seed alone decides.
+#[test]
+fn a_calibrated_divisor_is_reported() {
+    let work = Workspace::new();
+    let flags = "--photons 20_000 --k 20 --divisor calibrated --passes 2";
+    let render = |name: &str, threads: u32| {
+        let arguments = format!(
+            "render fog.toml -o {name}.exr --report {name}.json {flags} --threads {threads}"
+        );
+        let run = work.run(&arguments);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(run.stderr.contains("(divisor calibrated)"), "{}", run.stderr);
+        assert!(run.stderr.contains("divisor calibrated: 20 photons count as 1"), "{}", run.stderr);
+        let report = fs::read(work.path(&format!("{name}.json"))).unwrap();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        assert_eq!(report["settings"]["estimate"]["divisor"], "calibrated");
+        let calibration = report["calibration"].clone();
+        assert_eq!(calibration["k"], 20);
+        let figure = |key: &str| calibration[key].as_f64().unwrap();
+        // Scattered photons are nearly independent.
+        assert!((figure("constant") - 19.0).abs() < 0.5, "{calibration}");
+        assert!(figure("std_error") > 0.0 && figure("std_error") < 0.05, "{calibration}");
+        assert!(figure("count_variance") > 0.0 && figure("count_exponent") > 0.0);
+        (fs::read(work.path(&format!("{name}.exr"))).unwrap(), calibration)
+    };
+    assert_eq!(render("a", 1), render("b", 2));
+    work.run("render fog.toml -o c.exr --k 1 --divisor calibrated").fails_with("at least 2");
+}
+
 #[test]
 fn the_image_depends_on_the_seed_alone() {
     let work = Workspace::new();

@@ -2,6 +2,7 @@
 
 use photonvdb::emission::EmissionKind;
 use photonvdb::lab::{AnalyticScene, CompareRequest, CompareRow, CompareTable, LabError};
+use photonvdb::math::DVec3;
 
 /// |z| that 1 of 150 000 standard normal numbers exceeds.
 const LIMIT: f64 = 4.5;
@@ -51,6 +52,13 @@ fn biases_are_those_of_the_laws() {
         let difference = (stratified.intrinsic_bias - stratified.law_bias).abs();
         let allowed = 3.0 * error + 0.05 * stratified.law_bias;
         assert!(difference < allowed, "{stratified:?}");
+        // The maps of one half calibrate the other.
+        for row in [random, stratified] {
+            let left = row.intrinsic_bias_calibrated.abs();
+            assert!(left < 0.1 * row.intrinsic_bias + 3.0 * row.std_error, "{row:?}");
+        }
+        assert!((random.calibrated_k - (k as f64 - 1.0)).abs() < 0.05, "{random:?}");
+        assert!(stratified.calibrated_removed > 0.9 || k < 10, "{stratified:?}");
         assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.3), "{stratified:?}");
 
         for row in [random, stratified] {
@@ -65,7 +73,7 @@ fn biases_are_those_of_the_laws() {
 /// Collisions of a photon between two distances, 4 pi int t^2 p dt by Simpson's rule, against transport theory.
 #[test]
 fn power_densities_add_up_to_known_collisions() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/truth/infinite.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/validate/truth/infinite.json");
     let truth: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     for (scene, albedo) in
@@ -79,7 +87,7 @@ fn power_densities_add_up_to_known_collisions() {
             let terms = (0..=steps).map(|i| {
                 let t = low + f64::from(i) * width;
                 let weight = if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                weight * t * t * scene.power_density(t)
+                weight * t * t * scene.power_density(DVec3::new(0.0, t, 0.0))
             });
             let sum = 4.0 * std::f64::consts::PI * width / 3.0 * terms.sum::<f64>();
             let exact = within(to) - within(from);
@@ -103,6 +111,74 @@ fn scattering_undoes_strata_as_counts_foretell() {
         if row.emission == "stratified" {
             assert!(row.variance_ratio.is_some_and(|ratio| ratio < 2.0), "{row:?}");
         }
+    }
+}
+
+/// A furnace has the same density up to its faces and corners, photons of unequal power, and clusters of the collisions of one
+/// photon: random emission reads 1/(k-1) too much all the same, k - 1 nothing.
+#[test]
+fn furnaces_are_read_evenly_up_to_their_faces() {
+    for scene in [AnalyticScene::UniformBall, AnalyticScene::UniformBox] {
+        let furnace = CompareRequest { scene, ..request(50_000, 40, 500) };
+        let table = tabulate(&furnace, 2);
+        for row in &table.rows {
+            assert_eq!((row.smoothing_bias, row.total_bias), (0.0, row.intrinsic_bias));
+            let allowed = LIMIT * row.std_error + 0.05 * row.count_law_bias;
+            let difference = (row.intrinsic_bias - row.count_law_bias).abs();
+            assert!(difference < allowed, "{row:?}");
+            if row.emission == "random" {
+                assert!(row.law_z.abs() < LIMIT, "{row:?}");
+                let z = row.intrinsic_bias_k_minus_1 / row.std_error;
+                assert!(z.abs() < LIMIT, "{row:?}");
+            } else {
+                // Five dimensions of strata, and photons that have scattered, leave little.
+                assert!(row.variance_ratio.is_some_and(|r| (0.8..1.5).contains(&r)), "{row:?}");
+            }
+        }
+    }
+}
+
+/// Parallel light is stratified in three dimensions as light of a point is.
+#[test]
+fn a_beam_obeys_the_laws() {
+    let beam = CompareRequest { scene: AnalyticScene::Beam, ..request(100_000, 40, 500) };
+    let table = tabulate(&beam, 2);
+    for k in [5, 10, 20] {
+        let random = row(&table, "random", k);
+        assert!(random.law_z.abs() < LIMIT, "{random:?}");
+        let stratified = row(&table, "stratified", k);
+        let difference = (stratified.intrinsic_bias - stratified.law_bias).abs();
+        let allowed = 3.0 * stratified.std_error + 0.05 * stratified.law_bias;
+        assert!(difference < allowed, "{stratified:?}");
+        assert!(stratified.variance_ratio.is_some_and(|ratio| ratio > 2.3), "{stratified:?}");
+        // 0.1 R^2, up to the spread of R.
+        let smoothing = stratified.smoothing_bias / stratified.smoothing_bias_exact;
+        assert!((0.9..1.4).contains(&smoothing), "{stratified:?}");
+    }
+}
+
+/// What is saved is told against the random emission of the same k.
+#[test]
+fn savings_are_photons_and_seconds_of_random_emission() {
+    let time = std::cell::Cell::new(0.0);
+    let request = request(20_000, 3, 50);
+    let processor_seconds = || {
+        time.set(time.get() + 1.0);
+        Some(time.get())
+    };
+    let table = request.tabulate(processor_seconds, || ()).unwrap();
+    assert_eq!(table.savings.len(), 3);
+    for saving in &table.savings {
+        let [random, own] = ["random", saving.emission].map(|name| row(&table, name, saving.k));
+        assert_eq!(saving.photons, own.photon_ratio / random.photon_ratio);
+        // All maps took as long.
+        assert_eq!(saving.seconds, Some(saving.photons));
+    }
+    let (plain, timed) = (table.to_csv(), table.to_csv_with_times());
+    for (plain, timed) in plain.lines().zip(timed.lines()) {
+        assert!(
+            timed.starts_with(plain) && timed.split(',').count() == plain.split(',').count() + 3
+        );
     }
 }
 

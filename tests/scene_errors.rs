@@ -202,7 +202,7 @@ const SPOILT: &[(&str, &str, &str)] = &[
     ("k = 50", "k = 0", "s.toml:57: estimate.k: must lie in 1 to 1000000, found 0"),
     ("k = 50", "k = 1", "s.toml:57: estimate.k: must be at least 2 with divisor \"k-1\", found 1"),
     ("divisor = \"k-1\"", "divisor = \"k-2\"", "s.toml:58: estimate.divisor: unknown value \"k-2\"; accepted: \"k\", \"k-1\", \"k-1/2\", \"calibrated\""),
-    ("divisor = \"k-1\"", "divisor = \"calibrated\"", "s.toml:58: estimate.divisor: \"calibrated\" is not available yet; use \"k-1\", \"k\" or \"k-1/2\""),
+    ("k = 50\ndivisor = \"k-1\"", "k = 1\ndivisor = \"calibrated\"", "s.toml:57: estimate.k: must be at least 2 with divisor \"calibrated\", found 1"),
     ("kernel = \"constant\"", "kernel = \"cone\"", "s.toml:59: estimate.kernel: unknown value \"cone\"; accepted: \"constant\", \"epanechnikov\""),
     ("max_radius = 0.5", "max_radius = 0", "s.toml:60: estimate.max_radius: must be above 0, found 0"),
     ("max_radius = 0.5", "radius = 0.5", "s.toml:60: estimate.radius: unknown key; did you mean \"max_radius\"?"),
@@ -332,9 +332,9 @@ fn overrides_meet_the_limits_of_the_file() {
         "s.toml: estimate.k (overridden): must be at least 2 with divisor \"k-1\", found 1"
     );
     assert_eq!(
-        refused(Overrides { divisor: Some("calibrated".into()), ..none.clone() }),
-        "s.toml: estimate.divisor (overridden): \"calibrated\" is not available yet; \
-         use \"k-1\", \"k\" or \"k-1/2\""
+        refused(Overrides { divisor: Some("k/2".into()), ..none.clone() }),
+        "s.toml: estimate.divisor (overridden): unknown value \"k/2\"; \
+         accepted: \"k\", \"k-1\", \"k-1/2\", \"calibrated\""
     );
     assert_eq!(
         refused(Overrides { emission: Some("halton".into()), ..none.clone() }),

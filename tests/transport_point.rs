@@ -1,6 +1,6 @@
 //! A point light in an infinite medium and at the centre of a ball, against transport theory.
 //!
-//! Truths are in `tests/truth`, exact to nine digits or more.
+//! Truths are in `src/validate/truth`, exact to nine digits or more.
 
 mod transport_support;
 

@@ -14,6 +14,7 @@ use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
 use super::count::{parse_count, parse_positive, parse_resolution};
 use super::reference::args::ReferenceArguments;
+use super::validate::ValidateArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,15 +27,19 @@ Examples:
   photonvdb bias 3d-random 3d-jittered --k 10,50,100
       How far k-nearest estimates are off, exact and measured.
   photonvdb compare analytic:point-absorbing --k 10,50,100
-      What stratified emission gains over random emission.
+      What stratified emission gains over random emission where the truth is known.
+  photonvdb compare fog.toml
+      What it gains in a scene: at points, and in pixels.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
       What a scene needs, without rendering it.
   photonvdb convert smoke.vdb -o small.vdb --grid density --half
       One grid of an OpenVDB file, in half the space.
+  photonvdb validate
+      What the renderer measures, against exact answers.
 
-Exit codes: 0 done, 2 bad input or usage.";
+Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.";
 
 const RENDER_EXAMPLES: &str = "\
 Examples:
@@ -84,12 +89,14 @@ pub enum Command {
     Reference(Box<ReferenceArguments>),
     /// Measure the bias of density estimates on models whose truth is known
     Bias(Box<BiasArguments>),
-    /// Measure random against stratified emission where the power density is known
+    /// Measure random against stratified emission, in a scene or where the power density is known
     Compare(Box<CompareArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),
     /// Write grids of a .vdb to another: some of them, cropped, smaller
     Convert(ConvertArguments),
+    /// Check what the renderer measures against exact answers
+    Validate(ValidateArguments),
 }
 
 /// `photonvdb render`
@@ -124,8 +131,8 @@ pub struct RenderArguments {
     #[arg(long, value_name = "K", value_parser = parse_count)]
     pub k: Option<u64>,
 
-    /// What the k nearest photons count as [default: estimate.divisor of the scene]
-    #[arg(long, value_name = "D", value_parser = PossibleValuesParser::new(["k", "k-1", "k-1/2"]))]
+    /// What the k nearest photons count as; `calibrated` measures what leaves no bias [default: estimate.divisor of the scene]
+    #[arg(long, value_name = "D", value_parser = PossibleValuesParser::new(["k", "k-1", "k-1/2", "calibrated"]))]
     pub divisor: Option<String>,
 
     /// How photons are sampled at the lights [default: photons.emission of the scene]

@@ -5,12 +5,19 @@ use std::path::PathBuf;
 
 use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
-use photonvdb::lab::LabError;
+use photonvdb::lab::{LabError, SceneComparisonError};
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::reference::ReferenceError;
 use photonvdb::render::RenderError;
 use photonvdb::scene::SceneError;
+use photonvdb::validate::ValidateError;
 use thiserror::Error;
+
+/// Bad input or usage, as clap's own errors.
+const BAD_INPUT: u8 = 2;
+
+/// A check asked for did not hold.
+const CHECK_FAILED: u8 = 1;
 
 /// Why a command could not be carried out.
 #[derive(Debug, Error)]
@@ -37,12 +44,24 @@ pub enum CliError {
     Reference(#[from] ReferenceError),
     #[error(transparent)]
     Lab(#[from] LabError),
+    #[error(transparent)]
+    Validate(#[from] ValidateError),
+    #[error("{failed} of {count} checks failed")]
+    ValidationFailed { failed: usize, count: usize },
     #[error(
         "there is no model {name:?}; did you mean {nearest}? `photonvdb bias --help` lists all"
     )]
     UnknownModel { name: String, nearest: &'static str },
-    #[error("there is nothing to compare in {name:?}; known are {known}")]
+    #[error(
+        "there is nothing to compare in {name:?}; known are scene files, .toml or .json, and {known}"
+    )]
     UnknownComparison { name: String, known: String },
+    #[error(
+        "{flag} is for scene files: analytic scenes have no images, and all light from photons"
+    )]
+    OnlyForSceneFiles { flag: &'static str },
+    #[error("{path}: {source}", path = path.display())]
+    SceneComparison { path: PathBuf, source: Box<SceneComparisonError> },
     #[error("cannot make the directory {path}: {source}", path = path.display())]
     Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]
@@ -53,4 +72,14 @@ pub enum CliError {
     Interrupt(#[from] ctrlc::Error),
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
+}
+
+impl CliError {
+    /// What the process ends with: 1 where a check asked for did not hold, else 2.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::ValidationFailed { .. } => CHECK_FAILED,
+            _ => BAD_INPUT,
+        }
+    }
 }

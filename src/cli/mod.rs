@@ -22,6 +22,7 @@ mod settings;
 mod summary;
 mod table_outputs;
 mod text_file;
+mod validate;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -32,9 +33,6 @@ use serde::Serialize;
 use args::{Arguments, Command};
 use error::CliError;
 
-/// Bad input or usage, as clap's own errors.
-const BAD_INPUT: u8 = 2;
-
 /// Runs the command typed.
 pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
@@ -44,12 +42,13 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments),
     };
     match finished {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::from(BAD_INPUT)
+            ExitCode::from(error.exit_code())
         }
     }
 }

@@ -13,7 +13,7 @@ use super::args::RenderArguments;
 use super::error::CliError;
 use super::interrupt;
 use super::progress::Progress;
-use super::report::{Comparison, Report, Seconds, is_stdout};
+use super::report::{CalibrationFigures, Comparison, Report, Seconds, is_stdout};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
@@ -52,10 +52,12 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         passes_done: made.passes_done,
         photons: made.into(),
         power: made.into(),
+        calibration: CalibrationFigures::of(made, scene.estimate.k),
         seconds: Seconds {
             load,
             trace: made.seconds.trace,
             build: made.seconds.build,
+            calibrate: made.seconds.calibrate,
             gather: made.seconds.gather,
             write: write_started.elapsed().as_secs_f64(),
             total: 0.0,
@@ -75,6 +77,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         write_json(path, &report)?;
     }
     summary.times(&report.seconds, &report.photons);
+    report.calibration.iter().for_each(|calibration| summary.calibration(calibration));
     summary.truncated(&report.power, scene.photons.max_order);
     made.error.iter().for_each(|error| summary.error(made.passes_done, error));
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));

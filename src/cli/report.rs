@@ -24,6 +24,9 @@ pub struct Report {
     pub photons: PhotonCounts,
     /// Per channel \[W\].
     pub power: Power,
+    /// The numerator of estimates, where it was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<CalibrationFigures>,
     /// Wall-clock time \[s\].
     pub seconds: Seconds,
     /// Processor time of all threads \[s\].
@@ -46,6 +49,34 @@ pub struct PhotonCounts {
     pub stored: u64,
 }
 
+/// The divisor `calibrated` as measured.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CalibrationFigures {
+    /// Photons of an estimate.
+    pub k: usize,
+    /// What they count as.
+    pub constant: f64,
+    /// Its standard error.
+    pub std_error: f64,
+    /// Variance of the number of photons in a ball where k are expected.
+    pub count_variance: f64,
+    /// The power of the expected number with which it grows.
+    pub count_exponent: f64,
+}
+
+impl CalibrationFigures {
+    /// The figures of a render with estimates from k photons, if it measured them.
+    pub fn of(report: &RenderReport, k: usize) -> Option<Self> {
+        report.calibration.map(|calibration| Self {
+            k,
+            constant: calibration.constant,
+            std_error: calibration.std_error,
+            count_variance: calibration.law.variance,
+            count_exponent: calibration.law.exponent,
+        })
+    }
+}
+
 /// Where the power of the photons went, per channel \[W\]: emitted = absorbed + escaped + truncated + resampled.
 #[derive(Debug, Serialize)]
 pub struct Power {
@@ -62,6 +93,7 @@ pub struct Seconds {
     pub load: f64,
     pub trace: f64,
     pub build: f64,
+    pub calibrate: f64,
     pub gather: f64,
     pub write: f64,
     pub total: f64,

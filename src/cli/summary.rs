@@ -4,7 +4,7 @@ use photonvdb::render::ErrorEstimate;
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
-use super::report::{Comparison, PhotonCounts, Power, Seconds, is_stdout};
+use super::report::{CalibrationFigures, Comparison, PhotonCounts, Power, Seconds, is_stdout};
 
 /// Speaks unless told to be quiet.
 #[derive(Clone, Copy)]
@@ -39,9 +39,13 @@ impl Summary {
 
     /// Where the time went.
     pub fn times(self, seconds: &Seconds, photons: &PhotonCounts) {
-        let Seconds { load, trace, build, gather, write, total } = seconds;
+        let Seconds { load, trace, build, calibrate, gather, write, total } = seconds;
+        let calibrate = match *calibrate {
+            0.0 => String::new(),
+            seconds => format!("calibrate {seconds:.2}, "),
+        };
         self.line(&format!(
-            "{total:.2} s: load {load:.2}, trace {trace:.2}, build {build:.2}, gather {gather:.2}, write {write:.2}"
+            "{total:.2} s: load {load:.2}, trace {trace:.2}, build {build:.2}, {calibrate}gather {gather:.2}, write {write:.2}"
         ));
         let speed = photons.emitted as f64 / trace.max(f64::MIN_POSITIVE);
         self.line(&format!(
@@ -49,6 +53,14 @@ impl Summary {
             photons.emitted,
             photons.stored,
             rounded(speed)
+        ));
+    }
+
+    /// What the divisor was measured to be.
+    pub fn calibration(self, calibration: &CalibrationFigures) {
+        let CalibrationFigures { k, constant, std_error, .. } = calibration;
+        self.line(&format!(
+            "divisor calibrated: {k} photons count as {constant:.3} +- {std_error:.3}"
         ));
     }
 

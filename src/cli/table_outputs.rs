@@ -26,6 +26,10 @@ pub struct TableOutputs {
     /// Bias by k as a chart, with error bars
     #[arg(long, value_name = "OUT.svg")]
     pub plot: Option<PathBuf>,
+
+    /// Adds processor time and efficiency to the CSV, which then differs from run to run
+    #[arg(long)]
+    pub timing: bool,
 }
 
 impl TableOutputs {

@@ -34,6 +34,19 @@ pub enum EmissionKind {
     Sobol,
 }
 
+/// Which photons to emit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EmissionSettings {
+    /// How they are sampled.
+    pub kind: EmissionKind,
+    /// How many, rounded up to whole rays.
+    pub count: u64,
+    /// Photons at a time that leave along one ray, in strata of their first flight: at least 1.
+    pub photons_per_ray: u64,
+    /// Seed of all of them.
+    pub seed: u64,
+}
+
 /// A photon that has left its light.
 #[derive(Clone, Debug)]
 pub struct EmittedPhoton {
@@ -45,8 +58,8 @@ pub struct EmittedPhoton {
     pub first_flight: BoostedQuantile,
     /// The stream of the photon's further path.
     pub random: Random,
-    /// Number of the ray: photons that share one have the same.
-    pub ray_number: u64,
+    /// Number of the ray, where photons share one: then they have the same.
+    pub ray_number: Option<u64>,
     /// Whether the medium itself emitted it: then its first collision, too, is known from photons alone.
     pub is_from_medium: bool,
 }
@@ -103,22 +116,19 @@ impl<'a> Emission<'a> {
         count: u64,
         seed: u64,
     ) -> Self {
-        Self::with_shared_rays(lights, medium, opacity, mean_free_path, kind, count, 1, seed)
+        let settings = EmissionSettings { kind, count, photons_per_ray: 1, seed };
+        Self::with_settings(lights, medium, opacity, mean_free_path, settings)
     }
 
-    /// The same, but `photons_per_ray` photons at a time leave along one ray, in strata of their first flight: what is
-    /// known of the way through the medium serves them all. `count` is rounded to whole rays.
-    #[expect(clippy::too_many_arguments, reason = "one more than `new`")]
-    pub fn with_shared_rays(
+    /// The same with rays that photons may share: what is known of the way through the medium serves them all.
+    pub fn with_settings(
         lights: &'a [Light],
         medium: &'a Medium,
         opacity: impl Fn(&Ray) -> f64,
         mean_free_path: f64,
-        kind: EmissionKind,
-        count: u64,
-        photons_per_ray: u64,
-        seed: u64,
+        settings: EmissionSettings,
     ) -> Self {
+        let EmissionSettings { kind, count, photons_per_ray, seed } = settings;
         let emitters: Vec<Emitter> = lights
             .iter()
             .map(|light| Emitter::new(light, &medium.bounds))
@@ -174,39 +184,54 @@ impl<'a> Emission<'a> {
     /// Photon `index`, below [`Emission::count`]. `None` where the light sends nothing along the sample,
     /// as outside a spot's cone: the photon counts as emitted with no power.
     pub fn photon(&self, index: u64) -> Option<EmittedPhoton> {
-        let mut random = Stream::Photon.random(self.seed, index);
+        self.redrawn(index, self.seed)
+    }
+
+    /// Photon `index` with the random numbers of another seed: from the same stratum, and otherwise independent. The
+    /// points of a Sobol sequence stay where they are.
+    pub fn redrawn(&self, index: u64, seed: u64) -> Option<EmittedPhoton> {
         if self.photons_per_ray > 1 {
-            let ray = self.ray(index / self.photons_per_ray)?;
-            return Some(self.photon_of(&ray, index));
+            let ray = self.redrawn_ray(index / self.photons_per_ray, seed)?;
+            return Some(self.photon_along(&ray, index, seed));
         }
+        let mut random = Stream::Photon.random(seed, index);
         let light = self.light_of(index)?;
         let sample = light.sampler.sample(index - light.first, &mut random);
         // The dimensions that lead to the ray come first, then the flight.
         let quantile = sample.get(light.emitter.dimensions()).copied();
         let u = quantile.unwrap_or_else(|| uniform(&mut random));
-        let EmittedRay { ray, power, boost, number, is_from_medium } =
+        let EmittedRay { ray, power, boost, is_from_medium, .. } =
             light.ray(index, sample, self.photons_per_ray)?;
         let first_flight = BoostedQuantile { u, boost };
-        Some(EmittedPhoton { ray, power, first_flight, random, ray_number: number, is_from_medium })
+        Some(EmittedPhoton { ray, power, first_flight, random, ray_number: None, is_from_medium })
     }
 
     /// The ray that photons `number` times [`Emission::photons_per_ray`] and on share, where they are several; `None` as of
     /// [`Emission::photon`].
     pub fn ray(&self, number: u64) -> Option<EmittedRay> {
+        self.redrawn_ray(number, self.seed)
+    }
+
+    fn redrawn_ray(&self, number: u64, seed: u64) -> Option<EmittedRay> {
         let light = self.light_of(number)?;
-        let mut random = Stream::Ray.random(self.seed, number);
+        let mut random = Stream::Ray.random(seed, number);
         let sample = light.sampler.sample(number - light.first, &mut random);
         light.ray(number, sample, self.photons_per_ray)
     }
 
     /// Photon `index`, one of those of `ray`.
     pub fn photon_of(&self, ray: &EmittedRay, index: u64) -> EmittedPhoton {
-        let mut random = Stream::Photon.random(self.seed, index);
+        self.photon_along(ray, index, self.seed)
+    }
+
+    fn photon_along(&self, ray: &EmittedRay, index: u64, seed: u64) -> EmittedPhoton {
+        let mut random = Stream::Photon.random(seed, index);
         let stratum = (index % self.photons_per_ray) as f64 + uniform(&mut random);
         let u = stratum / self.photons_per_ray as f64;
         let first_flight = BoostedQuantile { u, boost: ray.boost };
         let &EmittedRay { ray, power, number, is_from_medium, .. } = ray;
-        EmittedPhoton { ray, power, first_flight, random, ray_number: number, is_from_medium }
+        let ray_number = Some(number);
+        EmittedPhoton { ray, power, first_flight, random, ray_number, is_from_medium }
     }
 
     /// The light that sends a ray.

@@ -2,7 +2,7 @@
 //!
 //! With r_k the distance of the k-th photon and V the part of that ball inside the medium, the estimate of power
 //! density is the photons' power, the k-th counted as the [`Divisor`] says, over V (Jensen and Christensen
-//! 1998; the numerators k, k - 1 and k - 1/2 are the thesis's chapters 3 and 4).
+//! 1998; the numerators k, k - 1 and k - 1/2 are the thesis's chapters 3 and 4; [`CountLaw`] finds the one without bias).
 //!
 //! Fluence divides each photon by sigma_t at its own place. In a grid sigma_t may vanish within the ball, where
 //! no photon can be; photons are therefore weighted by h(sigma_t) / sigma_t with h = min(sigma_t, c), and V
@@ -10,13 +10,17 @@
 //! bounds the weights. c is sigma_t at the query. Where the ball is not filled evenly, photons are weighted besides so
 //! that a linear fluence is read exactly ([`BallMoments`](crate::medium::BallMoments)); power density is the plain estimate.
 
+mod count_law;
 mod divisor;
 mod kernel;
 
+pub use count_law::CountLaw;
 pub use divisor::Divisor;
 pub use kernel::Kernel;
 
 use std::num::NonZeroUsize;
+
+use divisor::Shares;
 
 use crate::map::{Nearest, NearestPhotons, PhotonMap};
 use crate::math::{Ball, DVec3, Rgb};
@@ -27,8 +31,9 @@ use crate::medium::{Extinction, ISOTROPIC, Medium};
 pub struct EstimateOptions {
     /// Photons of one estimate.
     pub k: NonZeroUsize,
-    /// How the k-th photon counts.
-    pub divisor: Divisor,
+    /// What k equal photons count as, from [`Divisor::constant`] or [`CountLaw::constant`]: what is less than k is taken off
+    /// the k-th photon, and what is less than k - 1 off the others.
+    pub constant: f64,
     /// Weight by distance.
     pub kernel: Kernel,
     /// Largest radius \[m\]. Where fewer than k photons are within, all of them count, over that ball.
@@ -168,19 +173,21 @@ fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
     own.fold(0.0, |largest, s| f64::from(s).max(largest))
 }
 
-/// Calls `add` with each photon and its weight: the kernel's, and, for the k-th, the divisor's.
+/// Calls `add` with each photon and its weight: the kernel's, times what the divisor leaves of it.
 #[inline]
 fn for_weighted(nearest: &Nearest, options: EstimateOptions, mut add: impl FnMut(u32, f64)) {
     let inverse = 1.0 / (f64::from(nearest.radius) * f64::from(nearest.radius));
     let Some((last, inner)) = nearest.photons.split_last() else { return };
     let kernel = options.kernel;
+    let shares =
+        if nearest.complete { Shares::of(options.constant, options.k) } else { Shares::FULL };
     for neighbor in inner {
-        add(neighbor.photon, kernel.weight(f64::from(neighbor.distance_squared) * inverse));
+        let weight = kernel.weight(f64::from(neighbor.distance_squared) * inverse);
+        add(neighbor.photon, weight * shares.inner);
     }
-    let share = if nearest.complete { options.divisor.last_share(options.k) } else { 1.0 };
-    if share > 0.0 {
+    if shares.last > 0.0 {
         let weight = kernel.weight(f64::from(last.distance_squared) * inverse);
-        add(last.photon, weight * share);
+        add(last.photon, weight * shares.last);
     }
 }
 

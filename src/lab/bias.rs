@@ -84,7 +84,7 @@ pub struct ExperimentCost {
     pub n: u64,
     /// Repetitions, each giving every k at once.
     pub trials: u64,
-    /// Time the threads worked on it, summed \[s\].
+    /// Processor time of all threads \[s\].
     pub seconds: f64,
 }
 
@@ -169,12 +169,13 @@ impl BiasRow {
         law: Option<&Law>,
         moments: Option<&Moments>,
     ) -> Self {
-        let c = constant.value(k, law);
-        let exact_bias = law.map(|law| constant.bias(law));
+        let counts = model.count_law(k);
+        let c = constant.value(k, law, counts);
+        let exact_bias = law.and_then(|law| constant.bias(k, law, counts));
         // A constant has no variance, and nothing to measure.
         let exact_variance = law
             .filter(|law| !matches!(law, Law::Constant { .. }))
-            .map(|law| constant.variance(k, law));
+            .and_then(|law| constant.variance(k, law, counts));
         let scale = c.map(|c| c / k as f64);
         // c/u - 1 = (c/k) (k/u - 1) + (c/k - 1)
         let measured_bias =

@@ -5,10 +5,22 @@ use super::bias::BiasTable;
 const COLUMNS: &str = "model,divisor,n,k,exact_mean,exact_bias,exact_variance,trials,measured_mean,measured_bias,\
                        std_error,measured_variance,z,c,variance_std_error";
 
+const TIME_COLUMNS: &str = ",seconds,efficiency";
+
 impl BiasTable {
     /// The rows as CSV, a header first. The same bytes for the same request, whatever the machine's load.
     pub fn to_csv(&self) -> String {
-        let mut text = format!("{COLUMNS}\n");
+        self.lines(false)
+    }
+
+    /// The same with two columns more: processor time of the model's experiment \[s\], which all its rows share, and
+    /// efficiency. No two runs give the same bytes.
+    pub fn to_csv_with_times(&self) -> String {
+        self.lines(true)
+    }
+
+    fn lines(&self, timed: bool) -> String {
+        let mut text = COLUMNS.to_owned() + if timed { TIME_COLUMNS } else { "" } + "\n";
         for row in &self.rows {
             let trials = if row.trials > 0 { row.trials.to_string() } else { String::new() };
             let cells = [
@@ -29,6 +41,11 @@ impl BiasTable {
                 number(row.variance_std_error),
             ];
             text += &cells.join(",");
+            if timed {
+                let experiment = self.experiments.iter().find(|cost| cost.model == row.model);
+                let seconds = experiment.map(|cost| cost.seconds);
+                text += &format!(",{},{}", number(seconds), number(row.efficiency));
+            }
             text.push('\n');
         }
         text

@@ -31,23 +31,15 @@ pub enum LabError {
         /// The k asked for.
         k: u64,
     },
-    /// The ball that holds so many photons would reach the light.
+    /// The ball that holds so many photons would reach the light, a face or half of the medium.
     #[error(
-        "balls that hold k = {k} of n = {n} photons would reach the light; raise --n or lower --k"
+        "balls that hold k = {k} of n = {n} photons would be as large as the scene; raise --n or lower --k"
     )]
     BallTooLarge {
         /// The k asked for.
         k: u64,
         /// Photons emitted.
         n: u64,
-    },
-    /// Photons are not equally strong.
-    #[error(
-        "a photon carries {share} of the power that each should: counting photons does not measure power here"
-    )]
-    UnequalPowers {
-        /// Its power over the expected one.
-        share: f64,
     },
     /// A photon map cannot be built.
     #[error("{0}")]

@@ -6,6 +6,8 @@
 
 use std::f64::consts::PI;
 
+use crate::estimate::CountLaw;
+
 /// A radius in cells that holds k photons for certain, wherever its centre: it holds all cells that touch the ball
 /// of measure k.
 pub(super) fn certain_radius(k: u64, dimension: u32) -> f64 {
@@ -55,10 +57,15 @@ impl JitterLaw {
         k / (k - 0.5 - 0.5 * g) - 1.0
     }
 
+    /// How the number of photons varies where k are expected.
+    pub(super) fn counts(&self, k: f64) -> CountLaw {
+        let exponent = (self.dimension - 1.0) / self.dimension;
+        CountLaw { variance: self.surface * k.powf(exponent), exponent }
+    }
+
     /// Var\[k/u_(k)\] = V(k) / k^2; on a line the law is exact with V - 1/12.
     pub(super) fn variance(&self, k: f64) -> f64 {
-        let count = self.surface * k.powf((self.dimension - 1.0) / self.dimension);
         let correction = if self.dimension == 1.0 { 1.0 / 12.0 } else { 0.0 };
-        (count - correction) / (k * k)
+        (self.counts(k).variance - correction) / (k * k)
     }
 }

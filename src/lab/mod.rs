@@ -19,9 +19,13 @@ pub mod figures;
 mod jitter;
 mod model;
 mod plot;
+mod thread_clock;
 
 pub use bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
-pub use compare::{AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost};
+pub use compare::{
+    AnalyticScene, CompareRequest, CompareRow, CompareTable, EmissionCost, PixelRow, PointRow,
+    Saving, SceneComparison, SceneComparisonError, SceneCost, SceneReference, SceneTable,
+};
 pub use constant::Constant;
 pub use error::LabError;
 pub use experiment::{Experiment, Measured, Method, Moments};

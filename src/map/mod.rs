@@ -10,7 +10,7 @@ mod nearest;
 mod packed;
 
 pub use morton::morton_code;
-pub use nearest::{Nearest, NearestPhotons, Neighbor};
+pub use nearest::{Nearest, NearestPhotons, Neighbor, RADIUS_FLOOR};
 pub use packed::PackedDirection;
 
 use glam::Vec3;

@@ -90,6 +90,14 @@ impl<'a> NearestPhotons<'a> {
         Nearest { photons: &self.found, complete, radius: radius.max(RADIUS_FLOOR), query }
     }
 
+    /// All photons within `radius` \[m\] of a world-space `place`, in no order.
+    pub fn within(&mut self, place: DVec3, radius: f64) -> &[Neighbor] {
+        let query = self.map.frame.to_map(place);
+        self.last = None;
+        self.gather(query, ((radius / self.map.frame.unit) as f32).min(1e18));
+        &self.found
+    }
+
     /// All photons within `radius`.
     fn gather(&mut self, query: [f32; 3], radius: f32) -> usize {
         let found = &mut self.found;

@@ -25,6 +25,8 @@ pub enum Stream {
     Ray = 6,
     /// Paths of the reference path tracer.
     Reference = 7,
+    /// Photons drawn anew to see how their number in a ball varies.
+    Calibration = 8,
 }
 
 impl Stream {

@@ -170,8 +170,11 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
     if !inverse.is_finite() {
         return slabs_with_parallels(origin, direction, min, max);
     }
-    let (a, b) = ((min - origin) * inverse, (max - origin) * inverse);
-    let span = Span::new(a.min(b).max_element(), a.max(b).min_element());
+    // By the sign, not by size: a box turned inside out is empty.
+    let ascends = direction.cmpgt(DVec3::ZERO);
+    let near = (DVec3::select(ascends, min, max) - origin) * inverse;
+    let far = (DVec3::select(ascends, max, min) - origin) * inverse;
+    let span = Span::new(near.max_element(), far.min_element());
     (span.end > span.start).then_some(span)
 }
 
@@ -188,8 +191,11 @@ fn slabs_with_parallels(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3)
             }
             continue;
         }
-        let (a, b) = ((min[axis] - origin[axis]) * inverse, (max[axis] - origin[axis]) * inverse);
-        span = span.intersect(Span::new(a.min(b), a.max(b)))?;
+        let inverse = 1.0 / direction[axis];
+        // By the sign, not by size: a box turned inside out is empty.
+        let (near, far) = if inverse > 0.0 { (min, max) } else { (max, min) };
+        let enter = (near[axis] - origin[axis]) * inverse;
+        span = span.intersect(Span::new(enter, (far[axis] - origin[axis]) * inverse))?;
     }
     Some(span)
 }

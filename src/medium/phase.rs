@@ -17,7 +17,8 @@ pub const ISOTROPIC: f64 = 0.25 / PI;
 pub enum Phase {
     /// 1 / (4 pi).
     Isotropic,
-    /// Henyey-Greenstein, mean cosine g in (-1, 1), g > 0 forward.
+    /// Henyey-Greenstein, mean cosine g in (-1, 1), g > 0 forward. At -1 and 1, which scene files refuse, light goes straight
+    /// back or on: it can be sampled, but has no density.
     HenyeyGreenstein {
         /// Mean cosine of the scattering angle.
         g: f64,
@@ -33,7 +34,7 @@ impl Phase {
         }
     }
 
-    /// The density of scattering by an angle of the given cosine \[1/sr\].
+    /// The density of scattering by an angle of the given cosine \[1/sr\]; 0 where all light goes one way.
     #[inline]
     pub fn density(self, cosine: f64) -> f64 {
         match self {
@@ -45,7 +46,8 @@ impl Phase {
                 } else {
                     (1.0 + g) * (1.0 + g) - 2.0 * g * (1.0 + cosine)
                 };
-                ISOTROPIC * (1.0 - g) * (1.0 + g) / (base * base.sqrt())
+                let width = (1.0 - g) * (1.0 + g);
+                if width > 0.0 { ISOTROPIC * width / (base * base.sqrt()) } else { 0.0 }
             }
         }
     }
@@ -77,6 +79,9 @@ impl Phase {
 /// Near g = 0 the textbook form divides by g; the rational form has no such pole but cancels for
 /// large |g|, so each serves its half.
 fn henyey_greenstein_cosine(g: f64, t: f64) -> f64 {
+    if g.abs() >= 1.0 {
+        return g.signum();
+    }
     let cosine = if g.abs() < 0.3 {
         let tt = t * t;
         let numerator = 2.0 * t + g * (tt + 3.0) + 2.0 * g * g * t + g * g * g * (tt - 1.0);

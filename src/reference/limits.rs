@@ -49,7 +49,7 @@ impl Limits {
         // The error falls with the root of the samples.
         let by_error = self.relative_error.map(|limit| {
             let share = (limit / relative_error).powi(2).min(1.0);
-            if samples < FEWEST_FOR_ERROR && relative_error > 0.0 {
+            if samples < FEWEST_FOR_ERROR {
                 share.min(samples as f64 / FEWEST_FOR_ERROR as f64)
             } else {
                 share
@@ -87,8 +87,9 @@ mod tests {
         assert_eq!(limits.share_done(20, 1.0, 0.009), 1.0);
         assert_eq!(limits.share_done(8, 1.0, 0.009), 0.5, "too few to know");
         assert_eq!(Limits::default().share_done(1 << 40, 1e9, 0.0), 0.0);
-        // A black image has an error of 0.
+        // A black image has an error of 0; so may one whose light no path has found yet.
         let by_error = Limits { relative_error: Some(0.01), ..Limits::default() };
-        assert_eq!(by_error.share_done(2, 0.1, 0.0), 1.0);
+        assert_eq!(by_error.share_done(2, 0.1, 0.0), 0.125);
+        assert_eq!(by_error.share_done(16, 0.1, 0.0), 1.0);
     }
 }

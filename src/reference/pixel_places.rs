@@ -3,7 +3,8 @@
 //! The scattered light of a ray that passes a point light at distance D grows as 1 / D: even places would give such a
 //! pixel an infinite variance. Half of its places are drawn along rays from the light's image instead, with density
 //! 1 / (2 pi rho edge), rho the distance and edge that of the pixel's edge in the same direction; a place is worth one over the density of the
-//! mixture.
+//! mixture. Of a light just beyond the pixel's edge the nearest point of the pixel takes the place: every other is nearer to it than
+//! to the light.
 
 use std::f64::consts::PI;
 
@@ -17,6 +18,9 @@ pub(super) struct WeightedPlace {
     pub(super) weight: f64,
 }
 
+/// How far beyond its edge a pixel heeds lights \[pixels\].
+const REACH: f64 = 0.5;
+
 /// The pixel whose top left corner is `corner`.
 #[derive(Clone, Debug)]
 pub(super) struct PixelPlaces {
@@ -28,9 +32,12 @@ pub(super) struct PixelPlaces {
 impl PixelPlaces {
     /// `peaks` are the images of all lights, in pixels.
     pub(super) fn new(corner: DVec2, peaks: &[DVec2]) -> Self {
-        let within = |peak: &DVec2| peak.cmpge(DVec2::ZERO).all() && peak.cmplt(DVec2::ONE).all();
-        let peaks = peaks.iter().map(|peak| *peak - corner).filter(within).collect();
-        Self { corner, peaks }
+        let near = |peak: &DVec2| {
+            let offset = *peak - corner;
+            let nearest = offset.clamp(DVec2::ZERO, DVec2::ONE);
+            (offset.distance(nearest) < REACH).then_some(nearest)
+        };
+        Self { corner, peaks: peaks.iter().filter_map(near).collect() }
     }
 
     pub(super) fn sample(&self, random: &mut Random) -> WeightedPlace {
@@ -49,9 +56,12 @@ impl PixelPlaces {
     }
 }
 
-/// Density of places about a light's image.
+/// Density of places about a light's image: infinite on it, where all directions out of the pixel lead.
 fn density(peak: DVec2, offset: DVec2) -> f64 {
-    let rho = (offset - peak).length().max(f64::MIN_POSITIVE);
+    let rho = (offset - peak).length();
+    if rho == 0.0 {
+        return f64::INFINITY;
+    }
     1.0 / (2.0 * PI * rho * distance_to_edge(peak, (offset - peak) / rho))
 }
 
@@ -73,21 +83,33 @@ mod tests {
     #[test]
     fn weighted_places_are_even() {
         let corner = DVec2::new(4.0, 7.0);
-        let peaks = [DVec2::new(4.2, 7.9), DVec2::new(1.0, 1.0), DVec2::new(4.7, 7.1)];
-        let places = PixelPlaces::new(corner, &peaks);
-        assert_eq!(places.peaks.len(), 2);
-        let mut random = Stream::Experiment.random(2, 0);
-        let count = 200_000;
-        let (mut total, mut first) = (0.0, DVec2::ZERO);
-        for _ in 0..count {
-            let WeightedPlace { position, weight } = places.sample(&mut random);
-            assert!(weight > 0.0 && weight <= 3.0);
-            total += weight / f64::from(count);
-            first += (position - corner) * weight / f64::from(count);
+        for (peaks, near_count) in [
+            (vec![DVec2::new(4.2, 7.9), DVec2::new(1.0, 1.0), DVec2::new(4.7, 7.1)], 2),
+            // On an edge, but for rounding; on a corner; beyond.
+            (vec![DVec2::new(4.0 + 1e-15, 7.3)], 1),
+            (vec![DVec2::new(4.0 - 1e-15, 7.3)], 1),
+            (vec![DVec2::new(5.0, 8.0)], 1),
+            (vec![DVec2::new(3.8, 7.3), DVec2::new(3.4, 7.3)], 1),
+        ] {
+            let places = PixelPlaces::new(corner, &peaks);
+            assert_eq!(places.peaks.len(), near_count);
+            let mut random = Stream::Experiment.random(2, 0);
+            let count = 200_000;
+            let (mut total, mut first, mut largest) = (0.0, DVec2::ZERO, 0.0_f64);
+            for _ in 0..count {
+                let WeightedPlace { position, weight } = places.sample(&mut random);
+                assert!((0.0..=3.0).contains(&weight));
+                total += weight / f64::from(count);
+                first += (position - corner) * weight / f64::from(count);
+                // No ray passes a light nearer than rounding.
+                let distance = position.distance(peaks[0]).max(1e-12);
+                largest = largest.max(weight / distance);
+            }
+            assert!((total - 1.0).abs() < 5e-3, "{total} {peaks:?}");
+            assert!((first - DVec2::splat(0.5)).abs().max_element() < 5e-3, "{first} {peaks:?}");
+            assert!(largest < 25.0, "what grows as the inverse distance stays bounded: {largest}");
         }
-        assert!((total - 1.0).abs() < 5e-3, "{total}");
-        assert!((first - DVec2::splat(0.5)).abs().max_element() < 5e-3, "{first}");
-        let even = PixelPlaces::new(DVec2::ZERO, &peaks).sample(&mut random);
-        assert_eq!(even.weight, 1.0);
+        let even = PixelPlaces::new(DVec2::ZERO, &[DVec2::new(4.2, 7.9)]);
+        assert_eq!(even.sample(&mut Stream::Experiment.random(2, 0)).weight, 1.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::emission::Emission;
+use crate::emission::{Emission, EmissionSettings};
 use crate::lattice::{CellLight, Cells, Deposit, LatticeShape, LightLattice};
 use crate::medium::Extinction;
 use crate::render::lit_medium::{scene_emission, trace_settings};
@@ -30,7 +30,13 @@ pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E, photons: u6
         None if photons >= FEWEST_TO_SHARE => PHOTONS_A_RAY[usize::from(E::IS_UNIFORM)],
         _ => 1,
     };
-    scene_emission(scene, extinction, photons, photons_a_ray, scene.photons.seed)
+    let settings = EmissionSettings {
+        kind: scene.photons.emission,
+        count: photons,
+        photons_per_ray: photons_a_ray,
+        seed: scene.photons.seed,
+    };
+    scene_emission(scene, extinction, settings)
 }
 
 /// Traces the photons of one pass into a lattice. Adds to `report`.

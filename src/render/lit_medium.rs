@@ -3,12 +3,13 @@
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-use crate::emission::Emission;
-use crate::estimate::{EstimateOptions, Estimator};
+use crate::emission::{Emission, EmissionKind, EmissionSettings};
+use crate::estimate::{Divisor, EstimateOptions, Estimator, Kernel};
 use crate::map::{Columns, PhotonMap};
 use crate::math::square_maps::square_to_sphere;
 use crate::math::{Ball, DVec2, Ray, Rgb, mean_channel};
 use crate::medium::{Bounds, Extinction};
+use crate::render::calibration::Calibrator;
 use crate::render::{Observer, Reader, RenderError, RenderReport, Stage};
 use crate::scene::Scene;
 use crate::trace::{MapFrame, TraceSettings, trace_photons};
@@ -25,6 +26,8 @@ pub struct LitMedium<'a, E> {
     scene: &'a Scene,
     extinction: &'a E,
     map: PhotonMap,
+    /// What k photons count as.
+    constant: f64,
 }
 
 impl<'a, E: Extinction> LitMedium<'a, E> {
@@ -41,7 +44,9 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
     ) -> Result<Self, RenderError> {
         let medium = &scene.medium;
         let started = Instant::now();
-        let emission = scene_emission(scene, extinction, scene.photons.count, 1, seed);
+        let (kind, count) = (scene.photons.emission, scene.photons.count);
+        let settings = EmissionSettings { kind, count, photons_per_ray: 1, seed };
+        let emission = scene_emission(scene, extinction, settings);
         let settings = trace_settings(scene);
         let lit_from = scene.lights.iter().find_map(|light| light.position());
         let frame = MapFrame::of(medium, lit_from);
@@ -71,18 +76,21 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         report.stored_count += map.len() as u64;
         report.bytes_per_photon = map.bytes_per_photon();
         report.power.average_in(&traced.balance, report.passes_done);
-        Ok(Self { scene, extinction, map })
+        let k = photons_of_estimate(scene);
+        let constant = match scene.estimate.divisor.constant(k) {
+            Some(constant) => constant,
+            None => calibrated_constant(scene, extinction, settings, &map, emission, report),
+        };
+        Ok(Self { scene, extinction, map, constant })
     }
 
     /// A reader for one thread.
     pub fn reader(&self) -> Reader<'_, E, Estimator<'_, E>> {
-        let estimate = &self.scene.estimate;
-        let unit = self.map.frame().unit;
         let options = EstimateOptions {
-            k: NonZeroUsize::new(estimate.k).unwrap_or(NonZeroUsize::MIN),
-            divisor: estimate.divisor,
-            kernel: estimate.kernel,
-            max_radius: estimate.max_radius.unwrap_or(MAX_RADIUS_SHARE * unit),
+            k: photons_of_estimate(self.scene),
+            constant: self.constant,
+            kernel: self.scene.estimate.kernel,
+            max_radius: max_radius(self.scene, self.map.frame()),
         };
         let estimator = Estimator::new(&self.scene.medium, self.extinction, &self.map, options);
         Reader::new(self.scene, self.extinction, estimator)
@@ -98,24 +106,15 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
 pub(super) fn scene_emission<'a, E: Extinction>(
     scene: &'a Scene,
     extinction: &E,
-    photons: u64,
-    photons_per_ray: u64,
-    seed: u64,
+    settings: EmissionSettings,
 ) -> Emission<'a> {
     let medium = &scene.medium;
-    Emission::with_shared_rays(
-        &scene.lights,
-        medium,
-        |ray| {
-            let span = medium.bounds.intersect(ray);
-            span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
-        },
-        mean_free_path(extinction, &medium.bounds),
-        scene.photons.emission,
-        photons,
-        photons_per_ray,
-        seed,
-    )
+    let opacity = |ray: &Ray| {
+        let span = medium.bounds.intersect(ray);
+        span.map_or(0.0, |span| extinction.opacity(ray, span, Rgb::ONE))
+    };
+    let mean_free_path = mean_free_path(extinction, &medium.bounds);
+    Emission::with_settings(&scene.lights, medium, opacity, mean_free_path, settings)
 }
 
 /// What is kept of their paths.
@@ -125,6 +124,51 @@ pub(super) fn trace_settings(scene: &Scene) -> TraceSettings {
         min_stored_order: u32::from(!scene.render.photons_only),
         max_stored: MAX_STORED,
     }
+}
+
+fn photons_of_estimate(scene: &Scene) -> NonZeroUsize {
+    NonZeroUsize::new(scene.estimate.k).unwrap_or(NonZeroUsize::MIN)
+}
+
+/// Largest radius of a query \[m\].
+fn max_radius(scene: &Scene, frame: MapFrame) -> f64 {
+    scene.estimate.max_radius.unwrap_or(MAX_RADIUS_SHARE * frame.unit)
+}
+
+/// What k photons of the map count as, measured once a render, as one pass is like another.
+fn calibrated_constant<E: Extinction>(
+    scene: &Scene,
+    extinction: &E,
+    settings: TraceSettings,
+    map: &PhotonMap,
+    own_emission: Emission,
+    report: &mut RenderReport,
+) -> f64 {
+    if let Some(calibration) = report.calibration {
+        return calibration.constant;
+    }
+    let k = photons_of_estimate(scene);
+    if scene.estimate.kernel == Kernel::Epanechnikov {
+        // The k-th photon has no weight: there is nothing to leave out.
+        return Divisor::KMinus1.constant(k).unwrap_or(1.0);
+    }
+    let started = Instant::now();
+    let seed = scene.photons.seed;
+    let count = scene.photons.count;
+    let kind = EmissionKind::Stratified;
+    let stratified = EmissionSettings { kind, count, photons_per_ray: 1, seed };
+    let emission = match scene.photons.emission {
+        EmissionKind::Sobol => scene_emission(scene, extinction, stratified),
+        EmissionKind::Random | EmissionKind::Stratified => own_emission,
+    };
+    let medium = &scene.medium;
+    let max_radius = max_radius(scene, map.frame());
+    let calibrator =
+        Calibrator { emission: &emission, medium, extinction, settings, map, k, max_radius };
+    let calibration = calibrator.calibrate(seed);
+    report.seconds.calibrate += started.elapsed().as_secs_f64();
+    report.calibration = Some(calibration);
+    calibration.constant
 }
 
 /// A typical mean free path \[m\]: the inverse of the mean sigma_t along rays through the middle. It shapes strata

@@ -1,6 +1,7 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
 
 use crate::estimate::{Estimate, Estimator};
+use crate::map::PhotonMap;
 use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
     ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction,
@@ -67,6 +68,15 @@ impl<'a> LitScene<'a> {
             Lit::Uniform(lit) => Box::new(lit.reader()),
             Lit::Chromatic(lit) => Box::new(lit.reader()),
             Lit::Grid(lit) => Box::new(lit.reader()),
+        }
+    }
+
+    /// The photon map.
+    pub fn map(&self) -> &PhotonMap {
+        match &self.lit {
+            Lit::Uniform(lit) => lit.map(),
+            Lit::Chromatic(lit) => lit.map(),
+            Lit::Grid(lit) => lit.map(),
         }
     }
 

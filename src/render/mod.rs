@@ -3,6 +3,7 @@
 //! [`LitMedium`] is a medium with its photon map, ready to be read along any ray: the film is made of such
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
+mod calibration;
 mod distances;
 mod emitted_light;
 mod error_estimate;
@@ -21,6 +22,7 @@ mod scattered_light;
 mod shadow;
 mod single_scatter;
 
+pub use calibration::Calibration;
 pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};

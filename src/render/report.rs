@@ -1,5 +1,6 @@
 //! Figures of a render.
 
+use crate::render::Calibration;
 use crate::render::ErrorEstimate;
 use crate::trace::PowerBalance;
 
@@ -17,6 +18,9 @@ pub struct RenderReport {
     /// Time of each stage \[s\].
     pub seconds: StageSeconds,
     /// Passes that the image is the mean of.
+    /// The numerator of estimates, where it is measured: before the first pass is read, and for all of them.
+    pub calibration: Option<Calibration>,
+    /// Passes completed.
     pub passes_done: u32,
     /// What the passes say of the image's error; `None` from fewer than two.
     pub error: Option<ErrorEstimate>,
@@ -31,4 +35,6 @@ pub struct StageSeconds {
     pub build: f64,
     /// Reading it along the camera's rays.
     pub gather: f64,
+    /// Measuring the numerator of estimates.
+    pub calibrate: f64,
 }

@@ -19,7 +19,7 @@ pub use photon::Photon;
 use path::Path;
 use rayon::prelude::*;
 
-use crate::emission::Emission;
+use crate::emission::{Emission, EmittedPhoton};
 use crate::math::{Ray, Rgb, Span};
 use crate::medium::{Extinction, Medium};
 
@@ -89,6 +89,23 @@ pub fn trace_photons<E: Extinction>(
         }
     }
     traced
+}
+
+/// Traces single photons: what each leaves behind, path by path. A photon that is not sent leaves nothing.
+pub fn trace_paths<E: Extinction>(
+    emitted: impl Iterator<Item = Option<EmittedPhoton>>,
+    medium: &Medium,
+    extinction: &E,
+    frame: MapFrame,
+    settings: TraceSettings,
+) -> Vec<Vec<Photon>> {
+    let keep = Collisions { frame, extinction, photons: Vec::new() };
+    let mut path = Path::new(medium, extinction, settings, keep);
+    let trace = |photon: Option<EmittedPhoton>| {
+        photon.into_iter().for_each(|photon| path.follow(photon));
+        std::mem::take(&mut path.keep.photons)
+    };
+    emitted.map(trace).collect()
 }
 
 /// Traces all photons of `emission` into `keeps`, in parallel: keep i of n takes rays i, i + n, i + 2 n and so on with all

@@ -48,8 +48,9 @@ impl<'a, E: Extinction, K: Keep> Path<'a, E, K> {
             let keeps_flight = K::FLIGHTS && order >= min_kept_order;
             // A first collision made likelier weighs right, its flight would not.
             let flight = if order == 0 && !keeps_flight {
-                let is_known =
-                    self.profile_of.replace(photon.ray_number) == Some(photon.ray_number);
+                let number = photon.ray_number;
+                let is_known = number.is_some() && self.profile_of == number;
+                self.profile_of = number;
                 let profile = &mut self.profile;
                 let boosted = self.extinction.boosted_flight(
                     &ray,

@@ -1,4 +1,5 @@
 //! Runs the binary in a directory of its own that holds one small scene, `fog.toml`.
+#![allow(dead_code)]
 
 use std::fs;
 use std::path::PathBuf;

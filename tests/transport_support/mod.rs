@@ -14,7 +14,7 @@ use photonvdb::medium::{
     Bounds, ChromaticExtinction, Extinction, GridExtinction, Medium, MediumExtinction, Phase,
     UniformExtinction,
 };
-use photonvdb::render::{LitScene, Unobserved};
+use photonvdb::render::{Gather, LitScene, Unobserved};
 use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use photonvdb::trace::{MapFrame, Photon, TraceSettings, TracedPhotons, trace_photons};
 
@@ -78,6 +78,7 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
         lights: vec![light],
         photons: PhotonSettings {
             count: photon_count,
+            is_count_given: true,
             emission: EmissionKind::Stratified,
             seed: 0,
             max_order: 1000,
@@ -92,6 +93,8 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             samples_per_pixel: 4,
             march_samples: 8,
             light_samples: 4,
+            gather: Some(Gather::Knn),
+            lattice: None,
             photons_only: false,
         },
         hash: 0,
@@ -241,7 +244,7 @@ pub fn passing_ray(center: DVec3, impact: f64, far: f64, random: &mut Random) ->
 }
 
 pub fn truth(file: &str) -> serde_json::Value {
-    let path = tests().join("truth").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/validate/truth").join(file);
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 

@@ -27,7 +27,8 @@ Examples:
   photonvdb bias 3d-order --k 1e6,1e9,1e12 --exact-only
       Exact values far beyond what can be simulated.
   photonvdb bias --figures figures/
-      Every graph of the thesis the models come from, a report on its claims, and every number drawn.";
+      Every graph of the thesis the models come from, photons emitted as for a render, the calibrated divisor, a report on the
+      thesis's claims, and every number drawn.";
 
 /// `photonvdb bias`
 #[derive(Args, Debug)]
@@ -49,9 +50,9 @@ pub struct BiasArguments {
     #[arg(long, value_name = "T", default_value = "10000", value_parser = parse_count)]
     pub trials: u64,
 
-    /// What the k nearest photons count as; `unbiased` is the constant that removes a model's bias
+    /// What the k nearest photons count as; `unbiased` removes a model's bias, `calibrated` is what a render would measure
     #[arg(long, value_name = "D", value_delimiter = ',', default_value = "all",
-        value_parser = PossibleValuesParser::new(["all", "k", "k-1/2", "k-1", "unbiased"]))]
+        value_parser = PossibleValuesParser::new(["all", "k", "k-1/2", "k-1", "unbiased", "calibrated"]))]
     pub divisor: Vec<String>,
 
     /// Seed of every random number: equal seeds give equal tables
@@ -71,7 +72,7 @@ pub struct BiasArguments {
     #[command(flatten)]
     pub outputs: TableOutputs,
 
-    /// Draws every graph of the thesis into a directory, with their numbers and a report
+    /// Draws every graph of the thesis, and what lies beyond it, into a directory, with their numbers and a report
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
 

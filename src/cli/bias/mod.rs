@@ -27,7 +27,8 @@ pub fn run(arguments: &BiasArguments) -> Result<(), CliError> {
     let request = request(arguments)?;
     let table = pool.install(|| request.tabulate(|_| ()))?;
     let chart = chart::bias_chart(&table);
-    arguments.outputs.write(&table.to_csv(), &table, &chart, &summary::of(&table))
+    let csv = if arguments.outputs.timing { table.to_csv_with_times() } else { table.to_csv() };
+    arguments.outputs.write(&csv, &table, &chart, &summary::of(&table))
 }
 
 fn request(arguments: &BiasArguments) -> Result<BiasRequest, CliError> {

@@ -10,8 +10,8 @@ const SHOWN: usize = 8;
 /// The table, and what was left out of it.
 pub fn of(table: &BiasTable) -> String {
     let mut text = format!(
-        "{:<23}{:<10}{:>13}{:>13}{:>13}{:>21}{:>8}\n",
-        "model", "divisor", "k", "exact bias", "sd", "measured bias", "z"
+        "{:<23}{:<11}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}\n",
+        "model", "divisor", "k", "exact bias", "sd", "measured bias", "z", "efficiency"
     );
     let mut left_out = 0;
     for rows in table.rows.chunk_by(|a, b| (a.model, a.divisor) == (b.model, b.divisor)) {
@@ -30,9 +30,12 @@ pub fn of(table: &BiasTable) -> String {
     for cost in &table.experiments {
         let _ = writeln!(
             text,
-            "{}: n = {}, {} trials in {:.2} s",
+            "{}: n = {}, {} trials, all k together, in {:.3} s of processor time",
             cost.model, cost.n, cost.trials, cost.seconds
         );
+    }
+    if !table.experiments.is_empty() {
+        text += "efficiency: 1 / (mean squared error of a trial x processor time of a trial [s])\n";
     }
     text
 }
@@ -58,14 +61,15 @@ fn line(row: &BiasRow) -> String {
     let deviation = row.exact_variance.or(row.measured_variance).map(f64::sqrt);
     let z = row.z.map_or("-".into(), |z| format!("{z:+.1}"));
     format!(
-        "{:<23}{:<10}{:>13}{:>13}{:>13}{:>21}{:>8}",
+        "{:<23}{:<11}{:>13}{:>13}{:>13}{:>21}{:>8}{:>12}",
         row.model,
         row.divisor,
         row.k,
         percent(row.exact_bias),
         percent(deviation),
         measured,
-        z
+        z,
+        row.efficiency.map_or("-".into(), |efficiency| format!("{efficiency:.2e}"))
     )
 }
 

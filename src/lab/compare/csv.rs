@@ -7,9 +7,27 @@ use crate::lab::csv::number;
 impl CompareTable {
     /// The rows as CSV, a header first; numbers have 17 significant digits.
     pub fn to_csv(&self) -> String {
+        self.lines(|_| Vec::new())
+    }
+
+    /// The same with what times say, too: of no two runs are these the same.
+    pub fn to_csv_with_times(&self) -> String {
+        self.lines(|row| {
+            let cost = self.costs.iter().find(|cost| cost.emission == row.emission);
+            let saving = self.savings.iter().find(|s| (s.emission, s.k) == (row.emission, row.k));
+            vec![
+                ("seconds_per_map", number(cost.and_then(|cost| cost.seconds_per_map))),
+                ("efficiency", number(row.efficiency)),
+                ("seconds_ratio", number(saving.and_then(|saving| saving.seconds))),
+            ]
+        })
+    }
+
+    fn lines(&self, times: impl Fn(&CompareRow) -> Vec<(&'static str, String)>) -> String {
         let mut text = String::new();
         for row in &self.rows {
-            let cells = cells(row);
+            let mut cells = cells(row);
+            cells.extend(times(row));
             if text.is_empty() {
                 text += &line(cells.iter().map(|(name, _)| *name));
             }
@@ -39,6 +57,9 @@ fn cells(row: &CompareRow) -> Vec<(&'static str, String)> {
         ("high_95", real(row.high_95)),
         ("intrinsic_bias_k_minus_half", real(row.intrinsic_bias_k_minus_half)),
         ("intrinsic_bias_k_minus_1", real(row.intrinsic_bias_k_minus_1)),
+        ("intrinsic_bias_calibrated", real(row.intrinsic_bias_calibrated)),
+        ("calibrated_k", real(row.calibrated_k)),
+        ("calibrated_removed", real(row.calibrated_removed)),
         ("law_bias", real(row.law_bias)),
         ("law_z", real(row.law_z)),
         ("count_law_bias", real(row.count_law_bias)),

@@ -1,12 +1,12 @@
 //! What theory says of k / u, and what is read from it.
 //!
-//! With V(u) the variance of the number of photons in a ball where u are expected, E\[k/u_k\] = k / (k - 1/2 - V/k + V'/2)
-//! up to higher orders. Where V grows as u^p this is k / (k - 1/2 - (1 - p/2) V/k): k / (k - 1) for independent
-//! photons, where V = u.
+//! The mean follows from how the number of photons in balls varies: [`CountLaw`].
 
-/// E\[k/u\] - 1 where the number of photons in the ball has variance V(k) and grows as k^p.
-pub(super) fn bias_from_counts(k: f64, variance: f64, exponent: f64) -> f64 {
-    k / (k - 0.5 - (1.0 - 0.5 * exponent) * variance / k) - 1.0
+use crate::estimate::CountLaw;
+
+/// E\[k/u\] - 1 where the number of photons in the ball varies so.
+pub(super) fn bias_from_counts(k: f64, counts: CountLaw) -> f64 {
+    k / counts.constant(k) - 1.0
 }
 
 /// Mean squared error of k / u among independent photons, where u is a gamma variate of shape k; infinite up to k = 2.
@@ -50,9 +50,14 @@ mod tests {
 
     #[test]
     fn known_values() {
-        assert!((bias_from_counts(10.0, 10.0, 1.0) - 1.0 / 9.0).abs() < 1e-15);
-        let jittered = bias_from_counts(10.0, 0.8 * 10_f64.powf(2.0 / 3.0), 2.0 / 3.0);
-        assert!((jittered - JitterLaw::new(3).bias(10.0)).abs() < 1e-8, "{jittered}");
+        let random = CountLaw { variance: 10.0, exponent: 1.0 };
+        assert!((bias_from_counts(10.0, random) - 1.0 / 9.0).abs() < 1e-15);
+        // The law of cells has the same first two terms.
+        let law = JitterLaw::new(3);
+        for k in [10.0, 100.0] {
+            let jittered = bias_from_counts(k, law.counts(k));
+            assert!((jittered / law.bias(k) - 1.0).abs() < 0.02 * (10.0 / k), "{k}: {jittered}");
+        }
         for k in [3.0, 17.5, 1e4] {
             assert!((random_k(random_error(k)) / k - 1.0).abs() < 1e-12);
         }

@@ -1,9 +1,7 @@
 //! The photon maps of one way of emission, traced as for a render.
 //!
-//! All photons are traced, and those kept that a query can reach: the shell about r = 1 where the queries lie. The map
-//! of a shell answers queries in it as the map of all photons would.
-
-use std::ops::Range;
+//! All photons are traced, and those kept that a query can reach. The map of these answers queries as the map of all
+//! photons would.
 
 use super::analytic::AnalyticScene;
 use crate::emission::{Emission, EmissionKind};
@@ -12,12 +10,9 @@ use crate::light::Light;
 use crate::map::{Columns, PhotonMap};
 use crate::math::{Ray, Rgb};
 use crate::medium::{Extinction, Medium};
-use crate::trace::{MapFrame, Photon, TraceSettings, trace_photons};
+use crate::trace::{MapFrame, TraceSettings, trace_photons};
 
-/// How far powers of photons may differ from each other: rounding to single precision.
-const EQUAL_POWER: f32 = 1e-6;
-
-/// Scatterings followed: with an albedo of 0.9 the chance of one more is 10^-45.
+/// Scatterings followed: with an albedo of 0.9 the chance of one more is 10^-45, and furnaces are left long before.
 const MAX_ORDER: u32 = 1000;
 
 /// What photon maps are made of.
@@ -27,25 +22,27 @@ pub(super) struct PhotonMaps {
     lights: [Light; 1],
     kind: EmissionKind,
     count: u64,
-    /// Distances from the light at which photons are kept \[m\].
-    kept: Range<f64>,
+    /// How far queries look \[m\].
+    reach: f64,
+}
+
+/// A map to ask.
+pub(super) struct AskedMap {
+    pub(super) photons: PhotonMap,
+    /// Mean power of a photon \[W\].
+    pub(super) mean_power: f64,
 }
 
 impl PhotonMaps {
-    pub(super) fn new(
-        scene: AnalyticScene,
-        kind: EmissionKind,
-        count: u64,
-        kept: Range<f64>,
-    ) -> Self {
-        Self { scene, medium: scene.medium(), lights: [scene.light()], kind, count, kept }
+    pub(super) fn new(scene: AnalyticScene, kind: EmissionKind, count: u64, reach: f64) -> Self {
+        Self { scene, medium: scene.medium(), lights: [scene.light()], kind, count, reach }
     }
 
     /// The map of a seed.
     ///
     /// # Errors
-    /// The map cannot be built, or its photons are not equally strong, so that counting them would not do.
-    pub(super) fn map(&self, seed: u64) -> Result<PhotonMap, LabError> {
+    /// The map cannot be built.
+    pub(super) fn map(&self, seed: u64) -> Result<AskedMap, LabError> {
         let extinction = self.scene.extinction();
         let medium = &self.medium;
         let opacity = |ray: &Ray| {
@@ -60,17 +57,12 @@ impl PhotonMaps {
         let frame = MapFrame::of(medium, self.lights[0].position());
         let traced = trace_photons(&emission, medium, &extinction, frame, settings, |_| ());
         let mut photons = traced.photons;
-        let power = 1.0 / self.count as f64;
-        photons.retain(|photon| self.kept.contains(&frame.to_world(photon.position).length()));
-        if let Some(photon) = photons.iter().find(|photon| !has_power(photon, power as f32)) {
-            let share = f64::from(photon.power[0]) / power;
-            return Err(LabError::UnequalPowers { share });
-        }
-        PhotonMap::build(&photons, frame, Columns::default())
-            .map_err(|error| LabError::Map(error.to_string()))
+        let is_kept = |position| self.scene.is_within_reach(frame.to_world(position), self.reach);
+        photons.retain(|photon| is_kept(photon.position));
+        let power: f64 = photons.iter().map(|photon| f64::from(photon.power[0])).sum();
+        let mean_power = power / photons.len() as f64;
+        let photons = PhotonMap::build(&photons, frame, Columns::default())
+            .map_err(|error| LabError::Map(error.to_string()))?;
+        Ok(AskedMap { photons, mean_power })
     }
-}
-
-fn has_power(photon: &Photon, power: f32) -> bool {
-    photon.power.iter().all(|&channel| (channel / power - 1.0).abs() <= EQUAL_POWER)
 }

@@ -2,15 +2,12 @@
 
 use std::num::NonZeroUsize;
 
-use super::analytic::{AnalyticScene, ball_volume};
+use super::analytic::AnalyticScene;
+use super::photon_maps::AskedMap;
 use crate::lab::error::LabError;
 use crate::lab::experiment::Moments;
-use crate::map::{NearestPhotons, PhotonMap};
-use crate::math::square_maps::square_to_sphere;
-use crate::math::{DVec2, DVec3, Random, uniform};
-
-/// Distances of queries from the light reach so far from 1 m: over several strata, so that no one lattice is measured.
-pub(super) const SPREAD: f64 = 0.05;
+use crate::map::NearestPhotons;
+use crate::math::{DVec3, Random};
 
 /// Counts are taken in two balls about that of k photons, this factor apart each, to see how their variance grows.
 pub(super) const COUNT_STEP: f64 = 1.25;
@@ -18,11 +15,11 @@ pub(super) const COUNT_STEP: f64 = 1.25;
 /// Errors of the estimate from k photons, in one map or several.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct QueryErrors {
-    /// k / u - 1.
+    /// k / u - 1; where photons differ in power, power found over power expected - 1.
     pub(super) intrinsic: Moments,
     /// Ball mean over value - 1.
     pub(super) smoothing: Moments,
-    /// k / (n V p) - 1.
+    /// Power found / (V p) - 1.
     pub(super) total: Moments,
     /// Photons less than expected, in the balls where k / [`COUNT_STEP`] and k [`COUNT_STEP`] are.
     pub(super) counts: [Moments; 2],
@@ -38,6 +35,15 @@ impl QueryErrors {
             counts: [self.counts[0].merge(other.counts[0]), self.counts[1].merge(other.counts[1])],
         }
     }
+}
+
+/// A photon near a query.
+#[derive(Clone, Copy, Debug)]
+struct FoundPhoton {
+    /// \[m\]
+    distance: f64,
+    /// \[W\]
+    power: f64,
 }
 
 /// Queries a map.
@@ -57,54 +63,66 @@ impl Queries<'_> {
     /// A query finds too few photons.
     pub(super) fn run(
         &self,
-        map: &PhotonMap,
+        map: &AskedMap,
         count: u64,
         random: &mut Random,
     ) -> Result<Vec<QueryErrors>, LabError> {
-        let mut finder = NearestPhotons::new(map);
+        let mut finder = NearestPhotons::new(&map.photons);
         let mut errors = vec![QueryErrors::default(); self.ks.len()];
-        let mut distances = Vec::new();
+        let mut around = Vec::new();
         for _ in 0..count {
-            let distance = 1.0 + SPREAD * (2.0 * uniform(random) - 1.0);
-            let direction = square_to_sphere(DVec2::new(uniform(random), uniform(random)));
-            self.look_around(distance * direction, &mut finder, &mut distances);
+            let place = self.scene.sample_query(random);
+            self.look_around(place, &mut finder, &mut around);
             for (&k, errors) in self.ks.iter().zip(&mut errors) {
-                self.add(distance, k, &distances, errors).ok_or_else(|| self.too_few(k))?;
+                self.add(place, k, map.mean_power, &around, errors)
+                    .ok_or_else(|| self.too_few(k))?;
             }
         }
         Ok(errors)
     }
 
-    /// Ascending distances of all photons that the largest k needs, and of some beyond \[m\].
-    fn look_around(&self, place: DVec3, finder: &mut NearestPhotons<'_>, distances: &mut Vec<f64>) {
+    /// All photons that the largest k needs, and some beyond, the nearest first.
+    fn look_around(
+        &self,
+        place: DVec3,
+        finder: &mut NearestPhotons<'_>,
+        around: &mut Vec<FoundPhoton>,
+    ) {
         let largest = self.ks.last().copied().unwrap_or(1);
         let wanted = NonZeroUsize::new(photons_sought(largest) as usize);
-        let unit = finder.map().frame().unit;
+        let map = finder.map();
+        let unit = map.frame().unit;
         let found = finder.find(place, wanted.unwrap_or(NonZeroUsize::MIN), self.reach);
-        let to_distance = |square: f32| f64::from(square).sqrt() * unit;
-        distances.clear();
-        distances.extend(found.photons.iter().map(|n| to_distance(n.distance_squared)));
-        distances.sort_unstable_by(f64::total_cmp);
+        around.clear();
+        around.extend(found.photons.iter().map(|neighbor| FoundPhoton {
+            distance: f64::from(neighbor.distance_squared).sqrt() * unit,
+            power: f64::from(map.power(neighbor.photon)[0]),
+        }));
+        around.sort_unstable_by(|a, b| {
+            a.distance.total_cmp(&b.distance).then(a.power.total_cmp(&b.power))
+        });
     }
 
     fn add(
         &self,
-        distance: f64,
+        place: DVec3,
         k: u64,
-        distances: &[f64],
+        mean_power: f64,
+        around: &[FoundPhoton],
         errors: &mut QueryErrors,
     ) -> Option<()> {
-        let radius = *distances.get(k as usize - 1)?;
-        let photons = self.photon_count as f64;
-        let expected = photons * self.scene.ball_power(distance, radius);
-        errors.intrinsic.add(k as f64 / expected - 1.0);
-        errors.smoothing.add(self.scene.smoothing(distance, radius));
-        let at_query = photons * ball_volume(radius) * self.scene.power_density(distance);
-        errors.total.add(k as f64 / at_query - 1.0);
+        let scene = self.scene;
+        let nearest = around.get(..k as usize)?;
+        let radius = nearest.last()?.distance;
+        let power: f64 = nearest.iter().map(|photon| photon.power).sum();
+        errors.intrinsic.add(power / scene.ball_power(place, radius) - 1.0);
+        errors.smoothing.add(scene.smoothing(place, radius));
+        let expected = scene.ball_volume(place, radius) * scene.power_density(place);
+        errors.total.add(power / expected - 1.0);
         for (step, counts) in [1.0 / COUNT_STEP, COUNT_STEP].into_iter().zip(&mut errors.counts) {
             let expected = step * k as f64;
-            let radius = self.scene.ball_radius(distance, expected / photons)?;
-            let count = distances.partition_point(|&distance| distance < radius);
+            let radius = scene.ball_radius(place, expected * mean_power)?;
+            let count = around.partition_point(|photon| photon.distance < radius);
             counts.add(count as f64 - expected);
         }
         Some(())

@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use super::analytic::AnalyticScene;
 use super::photon_maps::PhotonMaps;
-use super::query_errors::{COUNT_STEP, Queries, QueryErrors, SPREAD, photons_sought};
+use super::query_errors::{COUNT_STEP, Queries, QueryErrors, photons_sought};
 use super::row::{CompareRow, Sample};
+use super::saving::Saving;
 use crate::emission::EmissionKind;
 use crate::lab::error::LabError;
 use crate::math::Stream;
@@ -43,6 +44,8 @@ pub struct CompareTable {
     pub rows: Vec<CompareRow>,
     /// One for each way of emission.
     pub costs: Vec<EmissionCost>,
+    /// What they save over random emission, if that was measured: way by way, k by k.
+    pub savings: Vec<Saving>,
 }
 
 /// What the maps of one way of emission cost.
@@ -91,10 +94,11 @@ impl CompareRequest {
                 rows.push(CompareRow::new(self, *kind, k, sample, random, seconds));
             }
         }
-        Ok(CompareTable { rows, costs })
+        let savings = savings(&rows, &costs);
+        Ok(CompareTable { rows, costs, savings })
     }
 
-    /// How far queries look \[m\], where balls stay clear of the light.
+    /// How far queries look \[m\], where balls stay clear of lights and of faces that are in the way.
     fn reach(&self, ks: &[u64]) -> Result<f64, LabError> {
         let largest = ks.last().copied().unwrap_or(1);
         if let Some(&k) = ks.first().filter(|&&k| k < 2) {
@@ -104,11 +108,11 @@ impl CompareRequest {
             return Err(LabError::BallTooLarge { k: largest, n: self.n });
         }
         let sought = COUNT_STEP * photons_sought(largest) as f64;
-        let power = sought / self.n as f64;
-        // The density falls with the distance: the farthest query has the largest ball.
-        let radius = self.scene.ball_radius(1.0 + SPREAD, power).map(|radius| MARGIN * radius);
+        let power = sought * self.scene.largest_power(self.n);
+        let radius = self.scene.ball_radius(self.scene.hardest_query(), power);
         radius
-            .filter(|&radius| radius < 1.0 - SPREAD)
+            .map(|radius| MARGIN * radius)
+            .filter(|&radius| radius < self.scene.reach_limit())
             .ok_or(LabError::BallTooLarge { k: largest, n: self.n })
     }
 
@@ -120,8 +124,7 @@ impl CompareRequest {
         reach: f64,
         advanced: &mut impl FnMut(),
     ) -> Result<Vec<Vec<QueryErrors>>, LabError> {
-        let kept = 1.0 - SPREAD - reach..1.0 + SPREAD + reach;
-        let maps = PhotonMaps::new(self.scene, kind, self.n, kept);
+        let maps = PhotonMaps::new(self.scene, kind, self.n, reach);
         let queries = Queries { scene: self.scene, photon_count: self.n, ks, reach };
         let seed = Stream::Experiment.hash(self.seed, kind as u64);
         // One map at a time, its photons and queries in parallel, keeps the memory that of a single map.
@@ -140,6 +143,24 @@ impl CompareRequest {
             })
             .collect()
     }
+}
+
+/// Photons are compared by what independent ones would need, of which both ways are so many times better.
+fn savings(rows: &[CompareRow], costs: &[EmissionCost]) -> Vec<Saving> {
+    let random = emission_name(EmissionKind::Random);
+    let seconds_of = |name| {
+        let cost = costs.iter().find(|cost| cost.emission == name);
+        cost.and_then(|cost| cost.seconds_per_map)
+    };
+    let others = rows.iter().filter(|row| row.emission != random);
+    others
+        .filter_map(|row| {
+            let other = rows.iter().find(|other| other.emission == random && other.k == row.k)?;
+            let photons = row.photon_ratio / other.photon_ratio;
+            let (seconds, of_random) = (seconds_of(row.emission), seconds_of(random));
+            Some(Saving::new(row.emission, row.k, photons, seconds, of_random))
+        })
+        .collect()
 }
 
 fn merged(shares: Vec<Vec<QueryErrors>>, count: usize) -> Vec<QueryErrors> {

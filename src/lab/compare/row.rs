@@ -6,6 +6,7 @@ use super::law::{bias_from_counts, random_error, random_k, student_quantile};
 use super::query_errors::{COUNT_STEP, QueryErrors};
 use super::request::{CompareRequest, emission_name};
 use crate::emission::EmissionKind;
+use crate::estimate::CountLaw;
 use crate::lab::experiment::Moments;
 use crate::lab::jitter::JitterLaw;
 
@@ -24,7 +25,7 @@ pub struct CompareRow {
     pub runs: u64,
     /// Queries a map.
     pub queries: u64,
-    /// Mean of k / u - 1.
+    /// Mean of k / u - 1; where photons differ in power, of power found over power expected - 1.
     pub intrinsic_bias: f64,
     /// Its standard error, from the means of maps.
     pub std_error: f64,
@@ -36,6 +37,12 @@ pub struct CompareRow {
     pub intrinsic_bias_k_minus_half: f64,
     /// With k - 1.
     pub intrinsic_bias_k_minus_1: f64,
+    /// With the constant that the counts of the other half of the maps say.
+    pub intrinsic_bias_calibrated: f64,
+    /// That constant: what k photons count as.
+    pub calibrated_k: f64,
+    /// The share of the bias of k that it removes.
+    pub calibrated_removed: f64,
     /// What theory says of photons that collide once: 1 / (k - 1) of random emission, otherwise the law of one photon a
     /// cubic cell.
     pub law_bias: f64,
@@ -53,7 +60,7 @@ pub struct CompareRow {
     pub reduction: f64,
     /// Its standard error.
     pub reduction_std_error: f64,
-    /// Ball mean over value - 1, exact, for a query at 1 m and the ball where k are expected.
+    /// Ball mean over value - 1, exact, for a query in the middle of all and the ball where k are expected.
     pub smoothing_bias_exact: f64,
     /// Its mean over the balls of all queries.
     pub smoothing_bias: f64,
@@ -100,14 +107,14 @@ impl Sample {
     }
 
     /// One figure a map.
-    fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
+    pub(super) fn over_maps(&self, figure: impl Fn(&QueryErrors) -> f64) -> Moments {
         let mut moments = Moments::default();
         self.maps.iter().for_each(|map| moments.add(figure(map)));
         moments
     }
 
     /// Variance of single queries, with its standard error.
-    fn variance(&self) -> (f64, f64) {
+    pub(super) fn variance(&self) -> (f64, f64) {
         let mean = self.all.intrinsic.bias();
         let about_mean = self.over_maps(|map| {
             let map = &map.intrinsic;
@@ -116,10 +123,19 @@ impl Sample {
         (about_mean.bias(), about_mean.std_error())
     }
 
-    /// Variance of the number of photons where k are expected, and the power with which it grows.
-    fn count_variance(&self) -> (f64, f64) {
-        let [fewer, more] = self.all.counts.map(|counts| counts.mean_squared_error());
-        ((fewer * more).sqrt(), (more / fewer).ln() / (2.0 * COUNT_STEP.ln()))
+    /// How the number of photons varies where k are expected.
+    fn counts(&self) -> CountLaw {
+        let variances = self.all.counts.map(|counts| counts.mean_squared_error());
+        CountLaw::through(variances, COUNT_STEP)
+    }
+
+    /// The calibrated constant, and the bias it leaves: measured from every other map, and tried on those between.
+    fn calibrated(&self, k: f64) -> (f64, f64) {
+        let half = |first: usize| Self::of(self.maps.iter().skip(first).step_by(2).copied());
+        let halves = [half(0), half(1)];
+        let [even, odd] = halves.each_ref().map(|half| half.counts().constant(k));
+        let mean = halves.each_ref().map(|half| 1.0 + half.all.intrinsic.bias());
+        (0.5 * (even + odd), 0.5 * (odd * mean[0] + even * mean[1]) / k - 1.0)
     }
 }
 
@@ -137,8 +153,9 @@ impl CompareRow {
         let (bias, std_error) = (maps.bias(), maps.std_error());
         let half_width = student_quantile(request.runs as f64 - 1.0) * std_error;
         let instead_of_k = |divisor: f64| divisor / count * (1.0 + bias) - 1.0;
-        let (count_variance, count_exponent) = sample.count_variance();
-        let count_law_bias = bias_from_counts(count, count_variance, count_exponent);
+        let counts = sample.counts();
+        let count_law_bias = bias_from_counts(count, counts);
+        let (calibrated_k, calibrated_bias) = sample.calibrated(count);
         let random_bias = 1.0 / (count - 1.0);
         let jittered = JitterLaw::new(3);
         let (law_bias, law_variance) = match kind {
@@ -155,7 +172,8 @@ impl CompareRow {
             (of_random / variance, of_random / variance * errors)
         });
         let squared_error = sample.all.intrinsic.mean_squared_error();
-        let exact_radius = request.scene.ball_radius(1.0, count / request.n as f64);
+        let (scene, place) = (request.scene, request.scene.typical_query());
+        let exact_radius = scene.ball_radius(place, count * scene.largest_power(request.n));
         Self {
             scene: request.scene.name(),
             emission: emission_name(kind),
@@ -169,16 +187,19 @@ impl CompareRow {
             high_95: bias + half_width,
             intrinsic_bias_k_minus_half: instead_of_k(count - 0.5),
             intrinsic_bias_k_minus_1: instead_of_k(count - 1.0),
+            intrinsic_bias_calibrated: calibrated_bias,
+            calibrated_k,
+            calibrated_removed: 1.0 - (calibrated_bias / bias).abs(),
             law_bias,
             law_z: (bias - law_bias) / std_error,
             count_law_bias,
             count_law_z: (bias - count_law_bias) / std_error,
-            count_variance,
-            count_exponent,
+            count_variance: counts.variance,
+            count_exponent: counts.exponent,
             reduction: 1.0 - bias / random_bias,
             reduction_std_error: std_error / random_bias,
             smoothing_bias_exact: exact_radius
-                .map_or(f64::NAN, |radius| request.scene.smoothing(1.0, radius)),
+                .map_or(f64::NAN, |radius| scene.smoothing(place, radius)),
             smoothing_bias: smoothing.bias(),
             smoothing_std_error: smoothing.std_error(),
             total_bias: total.bias(),

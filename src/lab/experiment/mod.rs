@@ -13,12 +13,11 @@ mod shells;
 
 pub use moments::Moments;
 
-use std::time::Instant;
-
 use rayon::prelude::*;
 
 use super::error::LabError;
 use super::model::Model;
+use super::thread_clock::ThreadClock;
 use crate::math::{Random, Stream};
 use direct::DirectDraw;
 use fast::FastDraw;
@@ -57,7 +56,7 @@ pub struct Experiment<'a> {
 pub struct Measured {
     /// Deviations of k / u_(k) from 1, for each k.
     pub moments: Vec<Moments>,
-    /// Time the threads worked, summed \[s\].
+    /// Processor time of all threads \[s\].
     pub seconds: f64,
 }
 
@@ -84,9 +83,9 @@ impl Experiment<'_> {
         let batches: Vec<Measured> = (0..BATCH_COUNT)
             .into_par_iter()
             .map(|batch| {
-                let started = Instant::now();
+                let clock = ThreadClock::start();
                 let moments = self.run_batch(batch);
-                Measured { moments, seconds: started.elapsed().as_secs_f64() }
+                Measured { moments, seconds: clock.seconds() }
             })
             .collect();
         Ok(batches.into_iter().reduce(Measured::merge))

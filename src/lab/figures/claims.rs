@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::calibrated;
 use super::study::{Studies, Study};
 use crate::lab::bias::BiasRow;
 use crate::lab::constant::Constant;
@@ -178,5 +179,5 @@ pub fn report(studies: &Studies) -> String {
         let holds = if holds { "yes" } else { "no" };
         text += &format!("| {claim} | {holds} | {finding} |\n");
     }
-    text
+    text + &calibrated::section(studies)
 }

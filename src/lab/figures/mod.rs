@@ -1,9 +1,11 @@
-//! Every graph of the thesis, drawn anew, with what follows from them beside.
+//! Every graph of the thesis, drawn anew, with what follows from them beside: variance, jittered cells, photons emitted as
+//! for a render, and the calibrated divisor.
 //!
 //! Theory is drawn as lines, experiments as points with error bars of one standard error. Each experiment repeats the
 //! thesis's own with ten times its repetitions; figures 3.x, 4.1, 4.2 and 4.3 share the same seven.
 
 mod beyond;
+mod calibrated;
 mod claims;
 mod study;
 mod thesis;
@@ -33,6 +35,7 @@ pub struct Figure {
 pub fn figures(studies: &Studies) -> Vec<Figure> {
     let mut figures = thesis::figures(studies);
     figures.extend(beyond::figures(studies));
+    figures.extend(calibrated::figures(studies));
     figures
 }
 

@@ -1,6 +1,8 @@
 //! The experiments behind the figures.
 
+use crate::emission::EmissionKind;
 use crate::lab::bias::{BiasRequest, BiasRow, BiasTable, ExperimentCost};
+use crate::lab::compare::{AnalyticScene, CompareRequest, CompareTable};
 use crate::lab::constant::Constant;
 use crate::lab::error::LabError;
 use crate::lab::experiment::Method;
@@ -11,6 +13,12 @@ use crate::lab::plot::Series;
 const LINE_TRIALS: u64 = 100_000;
 /// Those in two and three dimensions, times ten.
 const SPACE_TRIALS: u64 = 10_000;
+
+/// Photons emitted as for a render: those a map, maps, and queries of a map.
+const EMISSION_PHOTONS: u64 = 100_000;
+const EMISSION_RUNS: u64 = 64;
+const EMISSION_QUERIES: u64 = 500;
+const EMISSION_KS: [u64; 8] = [3, 5, 7, 10, 20, 50, 100, 200];
 
 /// What came of the simulation of one model.
 #[derive(Clone, Debug)]
@@ -32,6 +40,8 @@ pub struct Studies {
     pub(super) order_3d: Study,
     pub(super) order_volume: Study,
     pub(super) jittered: [Study; 3],
+    /// Photons emitted as for a render.
+    pub(super) emission: CompareTable,
 }
 
 impl Studies {
@@ -57,6 +67,15 @@ impl Studies {
             study(model, n, 200, 2 * SPACE_TRIALS)
         };
         let grids = [jittered(1)?, jittered(2)?, jittered(3)?];
+        let photons = CompareRequest {
+            scene: AnalyticScene::PointAbsorbing,
+            emissions: vec![EmissionKind::Random, EmissionKind::Stratified],
+            ks: EMISSION_KS.to_vec(),
+            n: EMISSION_PHOTONS,
+            runs: ((EMISSION_RUNS as f64 * scale) as u64).max(2),
+            queries: EMISSION_QUERIES,
+            seed,
+        };
         Ok(Self {
             random: study(Model::Random(1), 100_000, 200, LINE_TRIALS)?,
             first_even: study(Model::FirstApproximation, 100_000, 200, LINE_TRIALS)?,
@@ -69,6 +88,10 @@ impl Studies {
             order_3d: study(Model::Order(3), 1000, 200, SPACE_TRIALS)?,
             order_volume: study(Model::OrderVolume(3), 1000, 200, SPACE_TRIALS)?,
             jittered: grids,
+            emission: {
+                progress(photons.scene.name());
+                photons.tabulate(|| None, || ())?
+            },
         })
     }
 

@@ -4,6 +4,7 @@
 //! dimension, r^2 in two, r^3 in three (in the thesis's units). Every estimator is c / u_(k), its true value 1, and
 //! its bias c E\[1/u_(k)\] - 1, so that n and the dimension matter only through the law of u_(k).
 
+mod counts;
 mod jittered_line;
 mod law;
 mod shell;

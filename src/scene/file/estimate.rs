@@ -10,8 +10,8 @@ use crate::scene::error::Problem;
 ///
 /// | key | type | unit | default | range | meaning |
 /// |---|---|---|---|---|---|
-/// | `k` | integer | | 50 | 1 (2 with divisor `k-1`) to 10^6 | photons of one estimate |
-/// | `divisor` | `"k"`, `"k-1"`, `"k-1/2"` | | `"k-1"` | | numerator of the estimate; `"calibrated"` is reserved |
+/// | `k` | integer | | 50 | 1 (2 with divisor `k-1` or `calibrated`) to 10^6 | photons of one estimate |
+/// | `divisor` | `"k"`, `"k-1"`, `"k-1/2"`, `"calibrated"` | | `"k-1"` | | numerator of the estimate; `"calibrated"` measures it |
 /// | `kernel` | `"constant"`, `"epanechnikov"` | | `"constant"` | | weight by distance |
 /// | `max_radius` | number | m | a share of the medium's size | above 0 | largest radius of a query |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -29,12 +29,11 @@ pub struct EstimateSettings {
     pub max_radius: Option<f64>,
 }
 
-/// `None` stands for a divisor that is reserved.
-const DIVISORS: [(&str, Option<Divisor>); 4] = [
-    ("k", Some(Divisor::K)),
-    ("k-1", Some(Divisor::KMinus1)),
-    ("k-1/2", Some(Divisor::KMinusHalf)),
-    ("calibrated", None),
+const DIVISORS: [(&str, Divisor); 4] = [
+    ("k", Divisor::K),
+    ("k-1", Divisor::KMinus1),
+    ("k-1/2", Divisor::KMinusHalf),
+    ("calibrated", Divisor::Calibrated),
 ];
 
 const KERNELS: [(&str, Kernel); 2] =
@@ -53,13 +52,14 @@ fn serialize_kernel<S: Serializer>(kernel: &Kernel, serializer: S) -> Result<S::
 impl EstimateSettings {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
         table.allow(&["k", "divisor", "kernel", "max_radius"])?;
-        let divisor = table.choose("divisor", &DIVISORS)?.unwrap_or(Some(Divisor::KMinus1));
-        let reserved = "\"calibrated\" is not available yet; use \"k-1\", \"k\" or \"k-1/2\"";
-        let divisor = divisor.ok_or_else(|| table.problem("divisor", reserved))?;
+        let divisor = table.choose("divisor", &DIVISORS)?.unwrap_or(Divisor::KMinus1);
         let k: u64 = table.get_or("k", 50)?;
         table.ensure("k", (1..=MAX_K).contains(&k), "must lie in 1 to 1000000")?;
-        let leaves_none = k == 1 && divisor == Divisor::KMinus1;
-        table.ensure("k", !leaves_none, "must be at least 2 with divisor \"k-1\"")?;
+        // One photon alone has an infinite mean: nothing makes it unbiased.
+        if k == 1 && matches!(divisor, Divisor::KMinus1 | Divisor::Calibrated) {
+            let least = format!("must be at least 2 with divisor {:?}", divisor.name());
+            table.ensure("k", false, &least)?;
+        }
         let max_radius = table.get("max_radius")?;
         table.ensure("max_radius", max_radius.is_none_or(|r| r > 0.0), "must be above 0")?;
         let kernel = table.choose("kernel", &KERNELS)?.unwrap_or(Kernel::Constant);

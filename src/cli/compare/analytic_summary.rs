@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use photonvdb::lab::{CompareRow, CompareTable};
 
+use super::{percent_with_error, ratio, saving_line};
+
 /// The table, and what it cost. Biases in per cent.
 pub fn of(table: &CompareTable) -> String {
     let mut text = String::new();
@@ -17,12 +19,13 @@ pub fn of(table: &CompareTable) -> String {
     }
     let _ = writeln!(
         text,
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         "emission",
         "k",
         "intrinsic bias",
         "k-1/2",
         "k-1",
+        "calibr.",
         "law",
         "by count",
         "reduction",
@@ -30,47 +33,43 @@ pub fn of(table: &CompareTable) -> String {
         "total bias",
         "sd",
         "var. ratio",
-        "photons"
+        "photons",
+        "efficiency"
     );
     for row in &table.rows {
         let _ = writeln!(text, "{}", line(row));
     }
     for cost in &table.costs {
-        let seconds = cost.seconds_per_map.map_or("-".into(), |seconds| format!("{seconds:.2} s"));
-        let rows = table.rows.iter().filter(|row| row.emission == cost.emission);
-        let efficiencies: Vec<String> = rows
-            .filter_map(|row| Some(format!("{:.3e} (k = {})", row.efficiency?, row.k)))
-            .collect();
-        let _ = writeln!(
-            text,
-            "{}: {seconds} of processor time a run; efficiency 1/(squared error x time) {}",
-            cost.emission,
-            efficiencies.join(", ")
-        );
+        let seconds = cost.seconds_per_map.map_or("-".into(), |seconds| format!("{seconds:.3} s"));
+        let _ = writeln!(text, "{}: {seconds} of processor time a run", cost.emission);
     }
-    text + "law: 1/(k-1), or of one photon a cubic cell; by count: from the variance of photon counts in these maps;\n\
-            photons: what random emission needs for the same squared error of k/u in the same ball, over what this one needs\n"
+    for saving in &table.savings {
+        let _ = writeln!(text, "{}", saving_line(saving));
+    }
+    text + "calibr.: with the constant that photon counts of the other half of the maps say;\n\
+            law: 1/(k-1), or of one photon a cubic cell; by count: from the variance of photon counts in these maps;\n\
+            photons: what random emission needs for the same squared error of k/u in the same ball, over what this one needs;\n\
+            efficiency: 1 / (squared error x processor time of a run [s])\n"
 }
 
 fn line(row: &CompareRow) -> String {
     let percent = |value: f64| format!("{:+.3}", 100.0 * value);
-    let with_error =
-        |value: f64, error: f64| format!("{:+.3} +- {:.3}", 100.0 * value, 100.0 * error);
-    let ratio = row.variance_ratio.zip(row.variance_ratio_std_error);
     format!(
-        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}",
+        "{:<11}{:>5}{:>19}{:>9}{:>9}{:>9}{:>9}{:>9}{:>14}{:>10}{:>19}{:>8}{:>14}{:>9}{:>12}",
         row.emission,
         row.k,
-        with_error(row.intrinsic_bias, row.std_error),
+        percent_with_error(row.intrinsic_bias, row.std_error),
         percent(row.intrinsic_bias_k_minus_half),
         percent(row.intrinsic_bias_k_minus_1),
+        percent(row.intrinsic_bias_calibrated),
         percent(row.law_bias),
         percent(row.count_law_bias),
         format!("{:.1} +- {:.1}", 100.0 * row.reduction, 100.0 * row.reduction_std_error),
         percent(row.smoothing_bias),
-        with_error(row.total_bias, row.total_std_error),
+        percent_with_error(row.total_bias, row.total_std_error),
         format!("{:.2}", 100.0 * row.variance.sqrt()),
-        ratio.map_or("-".into(), |(ratio, error)| format!("{ratio:.2} +- {error:.2}")),
+        ratio(row.variance_ratio, row.variance_ratio_std_error),
         format!("{:.2}", row.photon_ratio),
+        row.efficiency.map_or("-".into(), |efficiency| format!("{efficiency:.3e}")),
     )
 }

@@ -1,0 +1,13 @@
+//! The renderer against exact answers, its samplers against their densities, hard cases, grids against numbers, and rates of
+//! convergence.
+
+#[path = "../cli_run/mod.rs"]
+mod cli_run;
+mod command;
+mod constant_grid;
+mod convergence;
+mod hard_cases;
+mod quick;
+mod samplers;
+#[path = "../transport_support/mod.rs"]
+mod transport_support;
