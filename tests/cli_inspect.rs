@@ -12,7 +12,7 @@ fn a_scene_shows_its_plan() {
     let work = Workspace::new();
     let run = work.run("inspect fog.toml");
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    for part in ["24 x 16", "homogeneous", "1 point light", "k = 50"] {
+    for part in ["24 x 16", "homogeneous", "1 point light", "lattice"] {
         assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
     }
     let plan: Value = serde_json::from_str(&work.run("inspect fog.toml --json").stdout).unwrap();

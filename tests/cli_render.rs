@@ -39,7 +39,7 @@ fn a_render_writes_image_preview_and_report() {
     assert_eq!(report["photons"]["emitted"], 2000);
     assert_eq!(report["settings"]["photons"]["seed"], 7);
     assert_eq!(report["plan"]["photons"], 1000);
-    assert_eq!(report["estimated_relative_error"], Value::Null);
+    assert!(report["estimated_relative_error"].is_number(), "two passes tell");
     assert_eq!(report.get("comparison"), None);
     for step in ["load", "trace", "build", "gather", "write", "total"] {
         assert!(report["seconds"][step].is_number(), "{step}");

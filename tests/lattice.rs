@@ -104,7 +104,7 @@ fn any_number_of_threads_gives_the_same_pixels() {
     for (name, text) in scenes() {
         let scene =
             scene(name, &text, &Overrides { photons: Some(20_000), ..Overrides::default() });
-        assert_eq!(scene.gather(), Gather::Lattice);
+        assert_eq!(scene.render.gather, Gather::Lattice);
         let films: Vec<Film> = [1, 2, 7]
             .into_iter()
             .map(|threads| {

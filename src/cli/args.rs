@@ -139,7 +139,8 @@ pub struct RenderArguments {
     #[arg(long, value_name = "E", value_parser = PossibleValuesParser::new(["random", "stratified", "sobol"]))]
     pub emission: Option<String>,
 
-    /// How light scattered twice or more is gathered from photons [default: render.gather of the scene]
+    /// How light scattered twice or more is gathered from photons: from the k nearest, or from their flights in a lattice;
+    /// auto takes the k nearest if anything is said of k or divisor [default: render.gather of the scene]
     #[arg(long, value_name = "G", value_parser = PossibleValuesParser::new(["auto", "knn", "lattice"]))]
     pub gather: Option<String>,
 

@@ -97,7 +97,8 @@ mod tests {
         let mut random = Stream::Experiment.random(3, 0);
         let (guide, mean) = Guide::new(&mut random, opacity).expect("some opacity");
         let exact = std::f64::consts::PI * 0.05 * 0.5;
-        assert!((mean / exact - 1.0).abs() < 1e-2, "{mean} {exact}");
+        // One probe a cell.
+        assert!((mean / exact - 1.0).abs() < 2e-2, "{mean} {exact}");
         let side = 500;
         let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
         for i in 0..side * side {

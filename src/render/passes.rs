@@ -68,7 +68,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let pixels = (scene.camera.width * scene.camera.height) as u64;
         let is_limited = options.has_limit();
         let mut samples_per_pixel = scene.render.samples_per_pixel;
-        let strategy = match scene.gather() {
+        let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
             Gather::Lattice => {
                 let [fewest, most] = PHOTONS_A_PASS;
@@ -77,7 +77,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 if is_limited {
                     samples_per_pixel = 1;
                     total = expected_photons(options.target_error);
-                    if !scene.photons.is_count_given {
+                    if !scene.is_photon_count_given {
                         photons = (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);
                     }
                 }

@@ -43,12 +43,12 @@ mod tests {
     use super::*;
     use crate::math::Stream;
 
-    /// Any 64 samples in a row fill each of 16 intervals of each dimension, and of a square's 16 cells, near evenly.
+    /// Any 1024 samples in a row fill each of 16 intervals of each dimension, and of a square's 16 cells, near evenly.
     #[test]
     fn samples_are_even_in_every_dimension_and_pair() {
         let samples = PixelSamples::new(&mut Stream::Pixel.random(1, 2));
         for first in [0, 1000, 1 << 30] {
-            let places: Vec<[f64; 3]> = (first..first + 64)
+            let places: Vec<[f64; 3]> = (first..first + 1024)
                 .map(|index| samples.sample(index))
                 .map(|sample| [sample.offset.x, sample.offset.y, sample.phase])
                 .collect();
@@ -60,8 +60,8 @@ mod tests {
                     line[(place[axis] * 16.0) as usize] += 1;
                     square[(place[axis] * 4.0) as usize * 4 + (place[other] * 4.0) as usize] += 1;
                 }
-                assert!(line.iter().all(|&count| (2..=6).contains(&count)), "{line:?}");
-                assert!(square.iter().all(|&count| (2..=6).contains(&count)), "{square:?}");
+                assert!(line.iter().all(|&count| (56..=72).contains(&count)), "{line:?}");
+                assert!(square.iter().all(|&count| (54..=72).contains(&count)), "{square:?}");
             }
         }
     }

@@ -39,7 +39,6 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::math::Rgb;
 use crate::medium::{Medium, MediumExtinction};
-use crate::render::Gather;
 use error::Problem;
 use volume::VolumeRules;
 
@@ -63,6 +62,8 @@ pub struct Scene {
     pub hash: u64,
     /// The grids that the medium is made of.
     pub grids: Vec<GridUse>,
+    /// Whether the number of photons was asked for: what is left open, a target error or a time budget decides.
+    pub is_photon_count_given: bool,
     /// What was mended on loading, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -83,8 +84,9 @@ impl Scene {
     pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
         let (file, tree) = SceneFile::load_tree(path, overrides)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::build(&file, directory, &overrides.volume_rules())
-            .map_err(|problem| problem.locate(path, &tree))
+        let scene = Self::build(&file, directory, &overrides.volume_rules())
+            .map_err(|problem| problem.locate(path, &tree))?;
+        Ok(Self { is_photon_count_given: file::has_key(&tree, "photons", "count"), ..scene })
     }
 
     /// Whether all light and all scattering is the same in the three channels.
@@ -96,12 +98,6 @@ impl Scene {
             && medium.emissivity.is_none()
             && !matches!(medium.extinction, MediumExtinction::Chromatic(_))
             && self.lights.iter().all(|light| light.color().is_some_and(grey))
-    }
-
-    /// How light scattered twice or more is gathered: as the scene says, or else as suits it best.
-    pub fn gather(&self) -> Gather {
-        let default = if self.render.photons_only { Gather::Knn } else { Gather::Lattice };
-        self.render.gather.unwrap_or(default)
     }
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
@@ -122,6 +118,7 @@ impl Scene {
             render: file.render,
             hash: hash::scene_hash(file, directory, &hashes)?,
             grids,
+            is_photon_count_given: true,
             warnings,
         })
     }

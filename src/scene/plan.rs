@@ -74,7 +74,7 @@ impl Plan {
             majorants: is_grid,
             photons: scene.photons.count,
             emission: emission_word(scene.photons.emission),
-            gather: scene.gather(),
+            gather: scene.render.gather,
             k: scene.estimate.k,
             divisor: scene.estimate.divisor.name(),
             expected_stored,

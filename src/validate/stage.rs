@@ -85,7 +85,6 @@ pub(super) fn scene(
         lights,
         photons: PhotonSettings {
             count: batch.count,
-            is_count_given: true,
             emission: EmissionKind::Stratified,
             seed: batch.seed,
             max_order: 1_000_000,
@@ -100,12 +99,13 @@ pub(super) fn scene(
             samples_per_pixel: 1,
             march_samples: 8,
             light_samples: 4,
-            gather: Some(Gather::Knn),
+            gather: Gather::Knn,
             lattice: None,
             photons_only: false,
         },
         hash: 0,
         grids: Vec::new(),
+        is_photon_count_given: true,
         warnings: Vec::new(),
     })
 }

@@ -78,7 +78,6 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
         lights: vec![light],
         photons: PhotonSettings {
             count: photon_count,
-            is_count_given: true,
             emission: EmissionKind::Stratified,
             seed: 0,
             max_order: 1000,
@@ -93,12 +92,13 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             samples_per_pixel: 4,
             march_samples: 8,
             light_samples: 4,
-            gather: Some(Gather::Knn),
+            gather: Gather::Knn,
             lattice: None,
             photons_only: false,
         },
         hash: 0,
         grids: Vec::new(),
+        is_photon_count_given: true,
         warnings: Vec::new(),
     }
 }

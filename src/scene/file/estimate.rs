@@ -50,8 +50,11 @@ fn serialize_kernel<S: Serializer>(kernel: &Kernel, serializer: S) -> Result<S::
 }
 
 impl EstimateSettings {
+    /// Every key of the section.
+    pub(super) const KEYS: [&str; 4] = ["k", "divisor", "kernel", "max_radius"];
+
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
-        table.allow(&["k", "divisor", "kernel", "max_radius"])?;
+        table.allow(&Self::KEYS)?;
         let divisor = table.choose("divisor", &DIVISORS)?.unwrap_or(Divisor::KMinus1);
         let k: u64 = table.get_or("k", 50)?;
         table.ensure("k", (1..=MAX_K).contains(&k), "must lie in 1 to 1000000")?;

@@ -86,16 +86,23 @@ impl SceneFile {
         let root = Table::root(tree)?;
         root.allow(&["camera", "medium", "light", "photons", "estimate", "render"])?;
         let lights = root.sections("light")?;
+        let asks_for_k = EstimateSettings::KEYS.iter().any(|key| has_key(tree, "estimate", key));
         let file = Self {
             camera: CameraSection::read(&root.section("camera")?)?,
             medium: MediumSection::read(&root.section("medium")?)?,
             lights: lights.iter().map(LightSection::read).collect::<Result<_, _>>()?,
             photons: PhotonSettings::read(&root.section("photons")?)?,
             estimate: EstimateSettings::read(&root.section("estimate")?)?,
-            render: RenderSettings::read(&root.section("render")?)?,
+            render: RenderSettings::read(&root.section("render")?, asks_for_k)?,
         };
         let is_lit = !file.lights.is_empty() || file.medium.emits();
         root.ensure("light", is_lit, "the scene has no light; add a [[light]]")?;
         Ok(file)
     }
+}
+
+/// Whether the file, or what replaces its values, says something at `section.key`.
+pub(super) fn has_key(tree: &Node, section: &str, key: &str) -> bool {
+    let section = Table::root(tree).and_then(|root| root.section(section));
+    section.is_ok_and(|section| section.has(key))
 }

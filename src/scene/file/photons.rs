@@ -18,9 +18,6 @@ use crate::scene::error::Problem;
 pub struct PhotonSettings {
     /// Photons emitted per pass.
     pub count: u64,
-    /// Whether the file says so; what it leaves open, a target error or a time budget decides.
-    #[serde(skip)]
-    pub is_count_given: bool,
     /// How they are sampled.
     #[serde(serialize_with = "serialize_emission")]
     pub emission: EmissionKind,
@@ -57,14 +54,12 @@ fn serialize_emission<S: Serializer>(
 impl PhotonSettings {
     pub(super) fn read(table: &Table) -> Result<Self, Problem> {
         table.allow(&["count", "emission", "seed", "max_order"])?;
-        let given = table.get("count")?;
-        let count = given.unwrap_or(1_000_000);
+        let count = table.get_or("count", 1_000_000)?;
         table.ensure("count", (1..=MAX_COUNT).contains(&count), "must lie in 1 to 10^12")?;
         let max_order: u64 = table.get_or("max_order", 1000)?;
         let max_order = u32::try_from(max_order).unwrap_or(0);
         table.ensure("max_order", max_order > 0, "must lie in 1 to 4294967295")?;
         let emission = table.choose("emission", &EMISSIONS)?.unwrap_or(EmissionKind::Stratified);
-        let (is_count_given, seed) = (given.is_some(), table.get_or("seed", 0)?);
-        Ok(Self { count, is_count_given, emission, seed, max_order })
+        Ok(Self { count, emission, seed: table.get_or("seed", 0)?, max_order })
     }
 }

@@ -13,7 +13,7 @@ use crate::scene::error::Problem;
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
-/// | `gather` | `"auto"`, `"knn"`, `"lattice"` | | `"auto"` | | how light scattered twice or more is gathered from photons |
+/// | `gather` | `"auto"`, `"knn"`, `"lattice"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, else `"lattice"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -24,9 +24,8 @@ pub struct RenderSettings {
     pub march_samples: usize,
     /// Single-scattering points a ray and light.
     pub light_samples: usize,
-    /// How light scattered twice or more is gathered; `None`: the plan chooses.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gather: Option<Gather>,
+    /// How light scattered twice or more is gathered.
+    pub gather: Gather,
     /// Cells of the lattice along its longest side; `None`: by the number of photons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<usize>,
@@ -35,7 +34,8 @@ pub struct RenderSettings {
 }
 
 impl RenderSettings {
-    pub(super) fn read(table: &Table) -> Result<Self, Problem> {
+    /// `asks_for_k`: whether the scene has an opinion on estimates from the k nearest photons.
+    pub(super) fn read(table: &Table, asks_for_k: bool) -> Result<Self, Problem> {
         table.allow(&[
             "samples_per_pixel",
             "march_samples",
@@ -45,8 +45,9 @@ impl RenderSettings {
             "photons_only",
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
-        let gather = table.choose("gather", &GATHERS)?.flatten();
-        let needs_map = photons_only && gather.is_some_and(|gather| gather != Gather::Knn);
+        let default = if photons_only || asks_for_k { Gather::Knn } else { Gather::Lattice };
+        let gather = table.choose("gather", &GATHERS)?.flatten().unwrap_or(default);
+        let needs_map = photons_only && gather != Gather::Knn;
         table.ensure("gather", !needs_map, "must be \"knn\" where photons_only is true")?;
         let lattice: Option<u64> = table.get("lattice")?;
         let fits = lattice.is_none_or(|cells| (2..=512).contains(&cells));

@@ -112,7 +112,7 @@ impl SceneComparison {
             None => pixels::make_reference(self, scene, &mut advanced)?,
         };
         // The k asked for is one of photon maps.
-        scene.render.gather = Some(Gather::Knn);
+        scene.render.gather = Gather::Knn;
         scene.photons.count = self.n;
         let points = points::measure(self, scene, &ks, &processor_seconds, &mut advanced)?;
         let images = pixels::measure(self, scene, reference, &processor_seconds, &mut advanced)?;
