@@ -99,7 +99,7 @@ mod tests {
         let exact = std::f64::consts::PI * 0.05 * 0.5;
         // One probe a cell.
         assert!((mean / exact - 1.0).abs() < 2e-2, "{mean} {exact}");
-        let side = 500;
+        let side = 2000;
         let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
         for i in 0..side * side {
             let u = DVec2::new((i / side) as f64 + 0.5, (i % side) as f64 + 0.5) / side as f64;
