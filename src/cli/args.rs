@@ -45,6 +45,10 @@ const RENDER_EXAMPLES: &str = "\
 Examples:
   photonvdb render fog.toml -o fog.exr --resolution 320x180 --photons 1e5
       A quick draft.
+  photonvdb render fog.toml -o fog.exr --target-error 0.02
+      As many passes as it takes to be within 2 %, noise and bias; --time-budget 60 for the best of a minute.
+  photonvdb render fog.toml -o fog.exr --gather knn --k 100 --divisor calibrated
+      From the photon map: the 100 nearest photons of each point.
   photonvdb render fog.toml -o fog.exr --reference truth.exr --report fog.json
       How long it took, how much memory, and how far it is from a reference.
   photonvdb render fog.toml -o fog.exr --report - --quiet | jq .seconds

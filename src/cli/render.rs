@@ -6,7 +6,7 @@ use std::time::Instant;
 use photonvdb::film::{
     FilmError, RgbImage, check_writable, compare, read_rgb, write_exr, write_preview_png,
 };
-use photonvdb::render::{Observer, Rendering, render};
+use photonvdb::render::{Observer, Rendering, photons_per_pass, render};
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
@@ -28,13 +28,13 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     check_outputs(arguments)?;
     let scene = load_scene(arguments)?;
     let reference = load_reference(arguments, &scene)?;
-    let plan = Plan::of(&scene);
+    let options = arguments.options();
+    let plan = Plan { photons: photons_per_pass(&scene, &options), ..Plan::of(&scene) };
     let interrupted = interrupt::catch()?;
     summary.plan(&scene, &plan);
     let load = started.elapsed().as_secs_f64();
 
     let pool = thread_pool(arguments.threads)?;
-    let options = arguments.options();
     let settings = Settings::of(&arguments.scene, &scene, &options, pool.current_num_threads());
     let progress = Progress::new(&options, arguments.quiet, interrupted);
     let rendering = pool.install(|| render(&scene, &options, &progress))?;

@@ -27,6 +27,7 @@ pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
+pub use passes::photons_per_pass;
 pub use reader::{RayRadiance, Reader};
 pub use report::{RenderReport, StageSeconds};
 pub use scattered_light::Gather;

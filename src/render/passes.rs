@@ -65,21 +65,16 @@ impl<'a, E: Extinction> Passes<'a, E> {
         options: &'a RenderOptions,
         observer: &'a dyn Observer,
     ) -> Self {
-        let pixels = (scene.camera.width * scene.camera.height) as u64;
         let is_limited = options.has_limit();
         let mut samples_per_pixel = scene.render.samples_per_pixel;
         let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
             Gather::Lattice => {
-                let [fewest, most] = PHOTONS_A_PASS;
-                let mut photons = scene.photons.count;
+                let photons = photons_per_pass(scene, options);
                 let mut total = photons.saturating_mul(u64::from(options.passes));
                 if is_limited {
                     samples_per_pixel = 1;
                     total = expected_photons(options.target_error);
-                    if !scene.is_photon_count_given {
-                        photons = (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);
-                    }
                 }
                 let emission = lit_lattice::emission(scene, extinction, photons);
                 let resolution = scene.render.lattice;
@@ -188,6 +183,18 @@ impl<'a, E: Extinction> Passes<'a, E> {
         self.probes = ErrorProbes::new(self.film.width, self.film.height);
         self.report.passes_done = 0;
     }
+}
+
+/// Photons that a pass emits: those of the scene, or, where a limit ends the render and the scene leaves it open, what
+/// suits the size of the image.
+pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
+    let is_open = options.has_limit() && !scene.is_photon_count_given;
+    if is_open && scene.render.gather == Gather::Lattice {
+        let [fewest, most] = PHOTONS_A_PASS;
+        let pixels = (scene.camera.width * scene.camera.height) as u64;
+        return (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);
+    }
+    scene.photons.count
 }
 
 /// Photons that an image of that error takes in smoke or fog, to the order of magnitude.
