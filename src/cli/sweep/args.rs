@@ -28,7 +28,7 @@ processor time. The CSV is the same, byte for byte, for equal requests; --timing
 
 Examples:
   photonvdb sweep fog.toml --plot sweep.svg
-      Defaults: the reference is made by 1024 paths a pixel, the image is 64 pixels wide.
+      Defaults: the reference is made by 8192 paths a pixel, the image is 64 pixels wide.
   photonvdb reference fog.toml -o truth.exr --resolution 128x128 --target-error 0.005
   photonvdb sweep fog.toml --reference truth.exr --csv sweep.csv --timing
       Against a reference made before, at its size.
@@ -50,7 +50,7 @@ pub struct SweepArguments {
     pub reference: Option<PathBuf>,
 
     /// Paths a pixel of the reference, where none is given
-    #[arg(long, value_name = "N", default_value = "1024", value_parser = parse_path_count, conflicts_with = "reference")]
+    #[arg(long, value_name = "N", default_value = "8192", value_parser = parse_path_count, conflicts_with = "reference")]
     pub reference_spp: u64,
 
     /// Photons emitted an image
