@@ -67,7 +67,7 @@ fn errors_are_those_of_a_furnace() {
     assert_eq!((steps.get(), table.rows.len()), (sweep.step_count(true), 6));
     for row in &table.rows {
         let parts = row.bias.hypot(row.noise);
-        assert!((row.error / parts - 1.0).abs() < 0.2 && row.noise > 0.0, "{row:?}");
+        assert!((row.error / parts - 1.0).abs() < 1e-9 && row.noise > 0.0, "{row:?}");
         assert!(row.mean_bias.abs() < 4.5 * row.mean_bias_std_error + 0.02, "{row:?}");
         assert_eq!(row.cpu_seconds, Some(1.0));
         assert_eq!(row.efficiency, Some(1.0 / (row.error * row.error)));

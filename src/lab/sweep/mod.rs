@@ -11,7 +11,7 @@
 //! - noise^2 = s^2,
 //! - bias^2 = (mean x - r)^2 - s^2 / R - v,
 //!
-//! so that error^2 = bias^2 + noise^2; each without bias itself. All are told relative to the mean of the reference.
+//! so that error^2 = bias^2 + noise^2; each without bias itself. Where chance makes bias^2 negative, it counts as 0. All are told relative to the mean of the reference.
 
 mod csv;
 mod error;

@@ -7,7 +7,7 @@ use crate::lab::experiment::Moments;
 /// The error of one image, and its parts: error^2 = bias^2 + noise^2. Relative to the mean of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSplit {
-    /// Root mean squared error of all pixels and channels, the reference's own noise taken off.
+    /// Root mean squared error of all pixels and channels, the reference's own noise taken off; at least the noise.
     pub error: f64,
     /// Its standard error, from how runs differ.
     pub error_std_error: f64,
@@ -37,11 +37,10 @@ impl ErrorSplit {
             squares.add(square / count);
         }
         let scale = truth.mean * truth.mean;
-        let reference = truth.variance / scale;
-        let error_squared = (squares.bias() - reference).max(0.0);
-        let error = error_squared.sqrt();
         let sums = Sums::of(images, truth);
         let (bias_squared, noise_squared) = sums.bias_and_noise(None);
+        // No less than the noise, which needs no reference: one too noisy itself makes nothing look perfect.
+        let error = (bias_squared.max(0.0) + noise_squared).sqrt();
         Self {
             error,
             error_std_error: if error > 0.0 { squares.std_error() / (2.0 * error) } else { 0.0 },
