@@ -5,7 +5,7 @@ use std::path::Path;
 
 use photonvdb::film::{
     ExtraLayers, Film, FilmError, Pixel, RenderMetadata, RgbImage, describe_exr, read_rgb,
-    write_exr,
+    read_variance, write_exr,
 };
 use photonvdb::math::Rgb;
 
@@ -80,6 +80,12 @@ fn layers_hold_the_parts_of_the_image() {
     assert_eq!(value("kernel_radius", index), 0.5);
     assert_eq!(value("variance.G", index), 0.0625);
     assert_eq!(value("sample_count", index), 64.0);
+
+    let variance = read_variance(&path).unwrap().unwrap();
+    assert_eq!((variance.width, variance.height), (20, 18));
+    assert!(variance.pixels.iter().all(|pixel| *pixel == [0.5, 0.0625, 0.0]));
+    write_exr(&path, &film, &ExtraLayers::default(), &metadata()).unwrap();
+    assert_eq!(read_variance(&path).unwrap(), None);
 }
 
 #[test]

@@ -14,6 +14,7 @@ use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
 use super::count::{parse_count, parse_positive, parse_resolution};
 use super::reference::args::ReferenceArguments;
+use super::sweep::args::SweepArguments;
 use super::validate::ValidateArguments;
 
 const EXAMPLES: &str = "\
@@ -30,6 +31,8 @@ Examples:
       What stratified emission gains over random emission where the truth is known.
   photonvdb compare fog.toml
       What it gains in a scene: at points, and in pixels.
+  photonvdb sweep fog.toml --plot sweep.svg
+      Speed against error: photons, k, gathering and the path tracer.
   photonvdb inspect smoke.vdb
       The grids of an OpenVDB file: types, bounds, values, and whether they can be rendered.
   photonvdb inspect fog.toml
@@ -95,6 +98,8 @@ pub enum Command {
     Bias(Box<BiasArguments>),
     /// Measure random against stratified emission, in a scene or where the power density is known
     Compare(Box<CompareArguments>),
+    /// Measure speed against error: a scene in many settings, against one reference
+    Sweep(Box<SweepArguments>),
     /// Show what is in a .vdb, a scene or an .exr
     Inspect(InspectArguments),
     /// Write grids of a .vdb to another: some of them, cropped, smaller

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use photonvdb::files::WriteFailure;
 use photonvdb::film::FilmError;
-use photonvdb::lab::{LabError, SceneComparisonError};
+use photonvdb::lab::{LabError, SceneComparisonError, SweepError};
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::reference::ReferenceError;
 use photonvdb::render::RenderError;
@@ -62,6 +62,12 @@ pub enum CliError {
     OnlyForSceneFiles { flag: &'static str },
     #[error("{path}: {source}", path = path.display())]
     SceneComparison { path: PathBuf, source: Box<SceneComparisonError> },
+    #[error("{path}: {source}", path = path.display())]
+    Sweep { path: PathBuf, source: Box<SweepError> },
+    #[error("these lists span more than {limit} settings; name fewer values")]
+    TooManySettings { limit: u128 },
+    #[error("there is no setting to measure; name values for --gather, --target-error or --spp")]
+    NothingToSweep,
     #[error("cannot make the directory {path}: {source}", path = path.display())]
     Directory { path: PathBuf, source: io::Error },
     #[error("cannot read {path}: {source}", path = path.display())]

@@ -20,6 +20,7 @@ mod report;
 mod resources;
 mod settings;
 mod summary;
+mod sweep;
 mod table_outputs;
 mod text_file;
 mod validate;
@@ -40,6 +41,7 @@ pub fn run() -> ExitCode {
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),

@@ -23,7 +23,7 @@ pub struct TableOutputs {
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
 
-    /// Bias by k as a chart, with error bars
+    /// The table as a chart, with error bars
     #[arg(long, value_name = "OUT.svg")]
     pub plot: Option<PathBuf>,
 

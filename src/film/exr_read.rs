@@ -29,14 +29,39 @@ use super::{FilmError, RgbImage};
 pub fn read_rgb(path: &Path) -> Result<RgbImage, FilmError> {
     guarded(path, || {
         let reader = open(path)?;
-        let (part, canvas) = choose_part(path, reader.headers())?;
-        let display = canvas.display_size();
-        check_pixel_count(path, display)?;
-        let pixels = vec![[0.0; 3]; display.area()];
-        let mut image = RgbImage { width: display.width(), height: display.height(), pixels };
-        decode(reader, part, &canvas, &mut image).map_err(|error| exr_error(path, error))?;
-        Ok(image)
+        match choose_part(path, reader.headers(), ["R", "G", "B"])? {
+            Some((part, canvas)) => read_part(path, reader, part, &canvas),
+            None => Err(no_rgb(path, reader.headers())),
+        }
     })
+}
+
+/// Reads the layer `variance`, the square of each pixel's standard error, of an EXR that has it.
+///
+/// # Errors
+/// As [`read_rgb`].
+pub fn read_variance(path: &Path) -> Result<Option<RgbImage>, FilmError> {
+    guarded(path, || {
+        let reader = open(path)?;
+        let names = ["variance.R", "variance.G", "variance.B"];
+        let found = choose_part(path, reader.headers(), names)?;
+        found.map(|(part, canvas)| read_part(path, reader, part, &canvas)).transpose()
+    })
+}
+
+/// The image of three channels of one part.
+fn read_part(
+    path: &Path,
+    reader: Reader<BufReader<File>>,
+    part: usize,
+    canvas: &Canvas,
+) -> Result<RgbImage, FilmError> {
+    let display = canvas.display_size();
+    check_pixel_count(path, display)?;
+    let pixels = vec![[0.0; 3]; display.area()];
+    let mut image = RgbImage { width: display.width(), height: display.height(), pixels };
+    decode(reader, part, canvas, &mut image).map_err(|error| exr_error(path, error))?;
+    Ok(image)
 }
 
 /// Decodes the chunks of one part into the image.
@@ -100,30 +125,35 @@ fn exr_error(path: &Path, error: exr::error::Error) -> FilmError {
     }
 }
 
-/// The first part with unsubsampled R, G and B.
-fn choose_part(path: &Path, headers: &[Header]) -> Result<(usize, Canvas), FilmError> {
+/// The first part with the channels named, if there is one; they must not be subsampled.
+fn choose_part(
+    path: &Path,
+    headers: &[Header],
+    names: [&str; 3],
+) -> Result<Option<(usize, Canvas)>, FilmError> {
     for (part, header) in headers.iter().enumerate() {
         let channel =
             |name: &str| header.channels.list.iter().position(|found| found.name.eq(name));
-        let (Some(red), Some(green), Some(blue)) = (channel("R"), channel("G"), channel("B"))
-        else {
-            continue;
-        };
+        let [Some(red), Some(green), Some(blue)] = names.map(channel) else { continue };
         if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
             let reason = "its channels are subsampled".to_string();
             return Err(FilmError::Unsupported { path: path.to_path_buf(), reason });
         }
-        return Ok((part, Canvas { header: header.clone(), rgb: [red, green, blue] }));
+        return Ok(Some((part, Canvas { header: header.clone(), rgb: [red, green, blue] })));
     }
+    Ok(None)
+}
+
+fn no_rgb(path: &Path, headers: &[Header]) -> FilmError {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: Vec<String> = names.map(|channel| channel.name.to_string()).collect();
-    Err(FilmError::NoRgb { path: path.to_path_buf(), channels: names.join(", ") })
+    FilmError::NoRgb { path: path.to_path_buf(), channels: names.join(", ") }
 }
 
 /// Where the blocks of one part lie in the image.
 struct Canvas {
     header: Header,
-    /// Indices of the channels R, G and B.
+    /// Indices of the channels read: red, green and blue.
     rgb: [usize; 3],
 }
 

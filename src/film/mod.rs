@@ -23,7 +23,7 @@ pub use compare::{ImageError, compare};
 pub use error::FilmError;
 pub use exr_description::{ExrDescription, ExrPart, describe_exr};
 pub use exr_limits::MAX_PIXEL_COUNT;
-pub use exr_read::read_rgb;
+pub use exr_read::{read_rgb, read_variance};
 pub use exr_write::write_exr;
 pub use layers::ExtraLayers;
 pub use metadata::RenderMetadata;

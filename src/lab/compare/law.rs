@@ -36,7 +36,7 @@ pub(super) fn random_k(error: f64) -> f64 {
 
 /// Quantile 0.975 of Student's t with `freedom` degrees of freedom, by Cornish and Fisher's expansion: to 1 % from 6 on, too small
 /// below.
-pub(super) fn student_quantile(freedom: f64) -> f64 {
+pub(in crate::lab) fn student_quantile(freedom: f64) -> f64 {
     let z: f64 = 1.959_963_984_540_054;
     let first = (z.powi(3) + z) / 4.0;
     let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0;

@@ -26,6 +26,9 @@ mod saving;
 mod scattering;
 mod scene;
 
+pub(super) use law::student_quantile;
+pub(super) use request::emission_name;
+
 pub use analytic::AnalyticScene;
 pub use request::{CompareRequest, CompareTable, EmissionCost};
 pub use row::CompareRow;

@@ -170,7 +170,7 @@ fn merged(shares: Vec<Vec<QueryErrors>>, count: usize) -> Vec<QueryErrors> {
 }
 
 /// As on the command line.
-pub(super) fn emission_name(kind: EmissionKind) -> &'static str {
+pub(in crate::lab) fn emission_name(kind: EmissionKind) -> &'static str {
     match kind {
         EmissionKind::Random => "random",
         EmissionKind::Stratified => "stratified",
