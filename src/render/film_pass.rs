@@ -9,6 +9,7 @@ use crate::render::error_estimate::is_probed;
 use crate::render::photon_query::{PhotonQuery, sort_along_curve};
 use crate::render::pixel_peak::{PolarPixel, holds};
 use crate::render::pixel_samples::{PixelSample, PixelSamples};
+use crate::render::reader::Looking;
 use crate::render::scattered_light::ScatteredLight;
 use crate::render::{Observer, Reader};
 use crate::scene::Scene;
@@ -151,16 +152,9 @@ impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
             let PixelSample { offset, phase } = samples.sample(self.pass.first_sample + sample);
             let place = corner + offset;
             let ray = scene.camera.ray(place.x, place.y);
+            let looking = Looking { skipped: &skipped, pixel: number as u32, phase };
             let (reader, queries) = (&mut self.reader, &mut self.queries);
-            let seen = reader.direct_light(
-                &ray,
-                f64::INFINITY,
-                &skipped,
-                number as u32,
-                phase,
-                queries,
-                random,
-            );
+            let seen = reader.direct_light(&ray, f64::INFINITY, looking, queries, random);
             let pixel = &mut self.pixels[number].pixel;
             pixel.single_scatter += seen.single_scatter * share;
             pixel.emission += seen.emission * share;

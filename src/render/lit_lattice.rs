@@ -107,5 +107,5 @@ pub const MAX_RESOLUTION: usize = 512;
 pub fn resolution<E: Extinction>(photons: u64) -> usize {
     let cells = if E::IS_UNIFORM { 24.0 } else { 36.0 };
     let cells = cells * (photons as f64 / 1.5e5).powf(0.2);
-    (cells as usize).clamp(8, 128)
+    (cells as usize).clamp(8, MAX_RESOLUTION)
 }

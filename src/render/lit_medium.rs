@@ -26,6 +26,7 @@ pub struct LitMedium<'a, E> {
     scene: &'a Scene,
     extinction: &'a E,
     map: PhotonMap,
+    k: NonZeroUsize,
     /// What k photons count as.
     constant: f64,
 }
@@ -81,13 +82,21 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
             Some(constant) => constant,
             None => calibrated_constant(scene, extinction, settings, &map, emission, report),
         };
-        Ok(Self { scene, extinction, map, constant })
+        Ok(Self { scene, extinction, map, k, constant })
+    }
+
+    /// The same, read from fewer photons than the scene asks for; a calibrated divisor is of its own k, which stays.
+    pub fn with_k(mut self, k: NonZeroUsize) -> Self {
+        if let Some(constant) = self.scene.estimate.divisor.constant(k) {
+            (self.k, self.constant) = (k, constant);
+        }
+        self
     }
 
     /// A reader for one thread.
     pub fn reader(&self) -> Reader<'_, E, Estimator<'_, E>> {
         let options = EstimateOptions {
-            k: photons_of_estimate(self.scene),
+            k: self.k,
             constant: self.constant,
             kernel: self.scene.estimate.kernel,
             max_radius: max_radius(self.scene, self.map.frame()),

@@ -1,5 +1,6 @@
 //! The passes of a render: independent, averaged, and as many as the limits ask for.
 
+use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use crate::emission::Emission;
@@ -26,6 +27,9 @@ const POINTS_A_RAY: usize = 4;
 
 /// What the estimated bias is off by, as a share of the estimated noise.
 const BIAS_NOISE: f64 = 0.1;
+
+/// The fewest photons of an estimate that k shrinks to: below, its noise is that of outliers.
+const FEWEST_OF_K: usize = 8;
 
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
@@ -124,16 +128,25 @@ impl<'a, E: Extinction> Passes<'a, E> {
         };
         let made = match &mut self.strategy {
             Strategy::Knn => {
-                let lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
+                let mut lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
+                if self.options.has_limit() {
+                    lit = lit.with_k(shrunk_k(scene.estimate.k, self.begun));
+                }
                 gather(&film_pass, || lit.reader(), *observer, report)
             }
             Strategy::Lattice { emission, resolution } => {
                 emission.reseed(seed);
+                // Beyond the photons that it was chosen for cells go on shrinking.
+                let emitted = emission.count().saturating_mul(u64::from(self.begun) + 1);
+                let grown = match self.options.has_limit() && scene.render.lattice.is_none() {
+                    true => lit_lattice::resolution::<E>(emitted),
+                    false => 0,
+                };
                 let lattice = lit_lattice::trace(
                     scene,
                     *extinction,
                     emission,
-                    *resolution,
+                    grown.max(*resolution),
                     *observer,
                     report,
                 )?;
@@ -203,6 +216,14 @@ fn expected_photons(target_error: Option<f64>) -> u64 {
     (1.5e5 * (0.05 / target).powi(2)).min(1e12) as u64
 }
 
+/// The photons of an estimate in a pass of many: with k falling as the pass to the power of -3/7 the noise of the mean falls as
+/// fast as its bias, the mean square of both as the number of passes to the power of -4/7, as it does for one pass of as many photons.
+fn shrunk_k(k: usize, pass: u32) -> NonZeroUsize {
+    let shrunk = k as f64 * (f64::from(pass) + 1.0).powf(-3.0 / 7.0);
+    let fewest = k.min(FEWEST_OF_K);
+    NonZeroUsize::new((shrunk.round() as usize).max(fewest)).unwrap_or(NonZeroUsize::MIN)
+}
+
 /// Gathers a pass, timed and observed.
 fn gather<'a, E: Extinction + 'a, S: ScatteredLight>(
     pass: &FilmPass<'a>,
@@ -222,4 +243,18 @@ fn gather<'a, E: Extinction + 'a, S: ScatteredLight>(
 /// The seed of a pass: the scene's own for the first, so that one pass is the render without passes.
 fn pass_seed(seed: u64, pass: u32) -> u64 {
     if pass == 0 { seed } else { Stream::Scramble.hash(seed, u64::from(pass)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn k_shrinks_with_passes_but_not_below_what_is_asked_for() {
+        assert_eq!(shrunk_k(50, 0).get(), 50);
+        // 128^(-3/7) = 1/8.
+        assert_eq!(shrunk_k(200, 127).get(), 25);
+        assert_eq!(shrunk_k(50, 1_000_000).get(), 8);
+        assert_eq!(shrunk_k(3, 1_000_000).get(), 3);
+    }
 }

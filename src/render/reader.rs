@@ -24,6 +24,17 @@ pub struct RayRadiance {
     pub transmittance: Rgb,
 }
 
+/// How a ray is looked along.
+#[derive(Clone, Copy, Debug)]
+pub struct Looking<'a> {
+    /// Lights whose single scattering is computed elsewhere.
+    pub skipped: &'a [usize],
+    /// The pixel that queries are for.
+    pub pixel: u32,
+    /// Where in each stratum of the ray it is looked at, in \[0, 1): uniform.
+    pub phase: f64,
+}
+
 /// Reads a lit medium, from one thread: light along rays.
 pub struct Reader<'a, E, S> {
     scene: &'a Scene,
@@ -69,8 +80,8 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     ) -> RayRadiance {
         let mut queries = std::mem::take(&mut self.queries);
         queries.clear();
-        let mut radiance =
-            self.direct_light(ray, max_distance, &[], 0, uniform(random), &mut queries, random);
+        let looking = Looking { skipped: &[], pixel: 0, phase: uniform(random) };
+        let mut radiance = self.direct_light(ray, max_distance, looking, &mut queries, random);
         for query in &queries {
             let scattered = self.answer(query);
             radiance.single_scatter += scattered.single;
@@ -80,19 +91,16 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         radiance
     }
 
-    /// The part of that light that needs no photons, and the queries, for `pixel`, that give the rest. `skipped` names
-    /// lights whose single scattering is computed elsewhere; `phase`, uniform in \[0, 1), is where in each stratum of the ray it is
-    /// looked at.
+    /// The part of that light that needs no photons, and the queries that give the rest.
     pub fn direct_light(
         &mut self,
         ray: &Ray,
         max_distance: f64,
-        skipped: &[usize],
-        pixel: u32,
-        phase: f64,
+        looking: Looking,
         queries: &mut Vec<PhotonQuery>,
         random: &mut Random,
     ) -> RayRadiance {
+        let Looking { skipped, pixel, phase } = looking;
         let inside = self.scene.medium.bounds.intersect(ray);
         let Some(span) = inside.and_then(|s| s.intersect(Span::new(0.0, max_distance))) else {
             return RayRadiance {
@@ -202,6 +210,6 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
 
     /// The answer from cells twice as long, weighted.
     pub fn coarse_answer(&self, query: &PhotonQuery) -> Rgb {
-        self.scattered_light.from_coarse_cells(query.place) * query.weight
+        self.scattered_light.coarse_in_scattered(query.place) * query.weight
     }
 }

@@ -29,7 +29,7 @@ pub trait ScatteredLight {
     fn in_scattered(&mut self, place: DVec3, towards: DVec3, turn: f64) -> InScattered;
 
     /// The same from cells twice as long.
-    fn from_coarse_cells(&self, _place: DVec3) -> Rgb {
+    fn coarse_in_scattered(&self, _place: DVec3) -> Rgb {
         Rgb::ZERO
     }
 }
@@ -53,7 +53,7 @@ impl ScatteredLight for &LightLattice {
         InScattered { multiple: self.at(place), radius, ..InScattered::default() }
     }
 
-    fn from_coarse_cells(&self, place: DVec3) -> Rgb {
+    fn coarse_in_scattered(&self, place: DVec3) -> Rgb {
         self.coarse_at(place)
     }
 }

@@ -77,17 +77,17 @@ impl SweepSetting {
         match *self {
             Self::Knn { photons, emission, k, divisor, rays } => {
                 use_photons(scene, photons, emission, rays);
-                scene.render.gather = Some(Gather::Knn);
+                scene.render.gather = Gather::Knn;
                 (scene.estimate.k, scene.estimate.divisor) = (k, divisor);
             }
             Self::Lattice { photons, emission, cells, rays } => {
                 use_photons(scene, photons, emission, rays);
-                (scene.render.gather, scene.render.lattice) = (Some(Gather::Lattice), cells);
+                (scene.render.gather, scene.render.lattice) = (Gather::Lattice, cells);
             }
             Self::Target { error, emission } => {
                 scene.photons.emission = emission;
-                scene.photons.is_count_given = false;
-                (scene.render.gather, scene.render.lattice) = (Some(Gather::Lattice), None);
+                scene.is_photon_count_given = false;
+                (scene.render.gather, scene.render.lattice) = (Gather::Lattice, None);
                 options.passes = MOST_PASSES;
                 options.target_error = Some(error);
             }
@@ -100,7 +100,7 @@ impl SweepSetting {
 }
 
 fn use_photons(scene: &mut Scene, photons: u64, emission: EmissionKind, rays: usize) {
-    (scene.photons.count, scene.photons.is_count_given) = (photons, true);
+    (scene.photons.count, scene.is_photon_count_given) = (photons, true);
     scene.photons.emission = emission;
     scene.render.samples_per_pixel = rays;
 }
