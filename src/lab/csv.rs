@@ -20,7 +20,7 @@ impl BiasTable {
     }
 
     fn lines(&self, timed: bool) -> String {
-        let mut text = COLUMNS.to_owned() + if timed { TIME_COLUMNS } else { "" } + "\n";
+        let mut table = CsvTable::new(COLUMNS, TIME_COLUMNS, timed);
         for row in &self.rows {
             let trials = if row.trials > 0 { row.trials.to_string() } else { String::new() };
             let cells = [
@@ -40,15 +40,34 @@ impl BiasTable {
                 number(row.c),
                 number(row.variance_std_error),
             ];
-            text += &cells.join(",");
-            if timed {
-                let experiment = self.experiments.iter().find(|cost| cost.model == row.model);
-                let seconds = experiment.map(|cost| cost.seconds);
-                text += &format!(",{},{}", number(seconds), number(row.efficiency));
-            }
-            text.push('\n');
+            let experiment = self.experiments.iter().find(|cost| cost.model == row.model);
+            let seconds = experiment.map(|cost| cost.seconds);
+            table.add(&cells, &[number(seconds), number(row.efficiency)]);
         }
-        text
+        table.text
+    }
+}
+
+/// A table in the making, with what times say in columns of its own, or without.
+pub(super) struct CsvTable {
+    pub(super) text: String,
+    timed: bool,
+}
+
+impl CsvTable {
+    /// A header: names with commas between, those of times last.
+    pub(super) fn new(columns: &str, time_columns: &str, timed: bool) -> Self {
+        let text = columns.to_owned() + if timed { time_columns } else { "" } + "\n";
+        Self { text, timed }
+    }
+
+    /// A row, as long as the header.
+    pub(super) fn add(&mut self, cells: &[String], times: &[String]) {
+        self.text += &cells.join(",");
+        if self.timed {
+            times.iter().for_each(|time| self.text += &format!(",{time}"));
+        }
+        self.text.push('\n');
     }
 }
 

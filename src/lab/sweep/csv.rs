@@ -2,7 +2,7 @@
 
 use super::request::SweepTable;
 use super::row::SweepRow;
-use crate::lab::csv::number;
+use crate::lab::csv::{CsvTable, number};
 
 const COLUMNS: &str = "mode,photons,emission,k,divisor,cells,samples,target_error,runs,error,error_std_error,bias,bias_high,\
                        mean_bias,mean_bias_std_error,noise,variance,estimated_error";
@@ -21,16 +21,12 @@ impl SweepTable {
     }
 
     fn lines(&self, timed: bool) -> String {
-        let mut text = COLUMNS.to_owned() + if timed { TIME_COLUMNS } else { "" } + "\n";
+        let mut table = CsvTable::new(COLUMNS, TIME_COLUMNS, timed);
         for row in &self.rows {
-            text += &cells(row).join(",");
-            if timed {
-                let (seconds, efficiency) = (number(row.cpu_seconds), number(row.efficiency));
-                text += &format!(",{seconds},{efficiency},{}", u8::from(row.is_on_front));
-            }
-            text.push('\n');
+            let front = u8::from(row.is_on_front).to_string();
+            table.add(&cells(row), &[number(row.cpu_seconds), number(row.efficiency), front]);
         }
-        text
+        table.text
     }
 }
 

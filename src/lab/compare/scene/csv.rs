@@ -3,7 +3,7 @@
 use super::request::SceneTable;
 use super::row::{PixelRow, PointRow};
 use crate::lab::compare::saving::Saving;
-use crate::lab::csv::number;
+use crate::lab::csv::{CsvTable, number};
 
 const COLUMNS: &str = "target,emission,k,n,runs,samples,bias,std_error,reference_std_error,low_95,high_95,\
                        bias_k_minus_half,bias_k_minus_1,smoothing_bias,smoothing_std_error,total_bias,\
@@ -24,32 +24,20 @@ impl SceneTable {
     }
 
     fn lines(&self, timed: bool) -> String {
-        let mut text = COLUMNS.to_owned() + if timed { TIME_COLUMNS } else { "" } + "\n";
+        let mut table = CsvTable::new(COLUMNS, TIME_COLUMNS, timed);
         let cost = |name: &str| self.costs.iter().find(|cost| cost.emission == name);
         for row in &self.points {
-            text += &point_cells(row).join(",");
-            if timed {
-                let seconds = cost(row.emission).and_then(|cost| cost.seconds_per_map);
-                let saved = seconds_saved(&self.point_savings, row.emission, row.k);
-                text += &times([seconds, row.efficiency, saved]);
-            }
-            text.push('\n');
+            let seconds = cost(row.emission).and_then(|cost| cost.seconds_per_map);
+            let saved = seconds_saved(&self.point_savings, row.emission, row.k);
+            table.add(&point_cells(row), &[seconds, row.efficiency, saved].map(number));
         }
         for row in &self.pixels {
-            text += &pixel_cells(row).join(",");
-            if timed {
-                let seconds = cost(row.emission).and_then(|cost| cost.seconds_per_image);
-                let saved = seconds_saved(&self.pixel_savings, row.emission, row.k);
-                text += &times([seconds, row.efficiency, saved]);
-            }
-            text.push('\n');
+            let seconds = cost(row.emission).and_then(|cost| cost.seconds_per_image);
+            let saved = seconds_saved(&self.pixel_savings, row.emission, row.k);
+            table.add(&pixel_cells(row), &[seconds, row.efficiency, saved].map(number));
         }
-        text
+        table.text
     }
-}
-
-fn times(values: [Option<f64>; 3]) -> String {
-    values.map(|value| ",".to_owned() + &number(value)).concat()
 }
 
 fn seconds_saved(savings: &[Saving], emission: &str, k: u64) -> Option<f64> {
