@@ -10,7 +10,7 @@ use photonvdb::emission::EmissionKind;
 use photonvdb::lab::AnalyticScene;
 use photonvdb::math::{DVec3, Stream};
 use photonvdb::medium::Bounds;
-use photonvdb::render::{LitScene, RenderOptions, Unobserved, render};
+use photonvdb::render::{Gather, LitScene, RenderOptions, Unobserved, render};
 
 use crate::transport_support::*;
 
@@ -118,4 +118,45 @@ fn passes_average_noise_and_keep_the_bias() {
     assert!((rate + 1.0).abs() < 0.25, "{rate}");
     let [one, _, sixteen] = statistics[..] else { unreachable!() };
     one.1.minus(sixteen.1).assert_is(0.0, "mean of 1 and of 16 passes");
+}
+
+/// Towards a limit k shrinks from pass to pass: what is left of the mean of many passes gets smaller, where passes of one k
+/// keep it.
+#[test]
+fn passes_of_shrinking_k_converge() {
+    let mut scene = scene(grey_fog(CUBE, 2.0, 0.9, 0.0), one_watt(DVec3::ZERO), 4000);
+    (scene.camera.width, scene.camera.height) = (8, 8);
+    scene.render.samples_per_pixel = 1;
+    scene.estimate.k = 800;
+    scene.estimate.max_radius = Some(10.0);
+    // Fine cells and many photons: off by less than 1 %.
+    scene.render.gather = Gather::Lattice;
+    scene.render.lattice = Some(64);
+    scene.photons.count = 400_000;
+    scene.render.samples_per_pixel = 128;
+    let truth = render(&scene, &RenderOptions::passes(4), &Unobserved).unwrap().film;
+    scene.render.gather = Gather::Knn;
+    scene.photons.count = 4000;
+    scene.render.samples_per_pixel = 1;
+    let truth: Vec<f64> = truth.pixels.iter().map(|pixel| pixel.multiple_scatter.x).collect();
+    let mut bias = |passes: u32, seconds: Option<f64>| {
+        let images: Vec<Vec<f64>> = (0..6)
+            .map(|seed| {
+                scene.photons.seed = 2000 + seed;
+                let options = RenderOptions { seconds, ..RenderOptions::passes(passes) };
+                let film = render(&scene, &options, &Unobserved).unwrap().film;
+                film.pixels.iter().map(|pixel| pixel.multiple_scatter.x).collect()
+            })
+            .collect();
+        let squares = truth.iter().enumerate().map(|(pixel, truth)| {
+            let values = images.iter().map(|image| image[pixel]);
+            let mean = values.clone().sum::<f64>() / 6.0;
+            let variance = values.map(|value| (value - mean).powi(2)).sum::<f64>() / 5.0 / 6.0;
+            (mean - truth).powi(2) - variance
+        });
+        (squares.sum::<f64>().max(0.0) / truth.iter().map(|t| t * t).sum::<f64>()).sqrt()
+    };
+    let (fixed, shrinking) = (bias(32, None), bias(32, Some(1e9)));
+    println!("bias of 32 passes: {fixed:.4}, with shrinking k {shrinking:.4}");
+    assert!(shrinking < 0.5 * fixed, "{fixed} {shrinking}");
 }
