@@ -36,7 +36,7 @@ fn form_does_not_matter() {
     let hash = |name: &str, text: &str| load(folder.path(), name, text).hash;
     let expected = hash("a.toml", SCENE);
     let json = r#"{"light": [{"intensity": [1, 1, 1], "position": [0.0, 2e0, 0], "kind": "point"}],
-        "photons": {"count": 1000, "seed": 0}, "estimate": {"k": 50},
+        "photons": {"count": 1000, "seed": 0}, "render": {"gather": "auto"},
         "medium": {"albedo": 0.5, "sigma_t": 1, "kind": "homogeneous", "phase": {},
                    "bounds": {"max": [1, 1, 1], "min": [-1, -1, -1]}},
         "camera": {"look_at": [0, 0, 0], "position": [0, 1, 6], "vertical_fov": 35}}"#;
@@ -76,6 +76,8 @@ fn every_value_matters() {
         ("[photons]", "[estimate]\nkernel = \"epanechnikov\"\n[photons]"),
         ("[photons]", "[estimate]\nmax_radius = 1\n[photons]"),
         ("[photons]", "[render]\nsamples_per_pixel = 1\n[photons]"),
+        ("[photons]", "[render]\ngather = \"knn\"\n[photons]"),
+        ("[photons]", "[render]\nlattice = 20\n[photons]"),
         ("[photons]", "[render]\nmarch_samples = 1\n[photons]"),
         ("[photons]", "[render]\nlight_samples = 1\n[photons]"),
         ("[photons]", "[render]\nphotons_only = true\n[photons]"),
