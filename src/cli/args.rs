@@ -148,14 +148,23 @@ pub struct RenderArguments {
     #[arg(long, value_name = "E", value_parser = PossibleValuesParser::new(["random", "stratified", "sobol"]))]
     pub emission: Option<String>,
 
-    /// How light scattered twice or more is gathered from photons: from the k nearest, or from their flights in a lattice;
-    /// auto takes the k nearest if anything is said of k or divisor [default: render.gather of the scene]
-    #[arg(long, value_name = "G", value_parser = PossibleValuesParser::new(["auto", "knn", "lattice"]))]
+    /// How light scattered twice or more is gathered from photons: from the k nearest, from their flights in a lattice, or by
+    /// paths that bounce a few times and end in the lattice; auto takes the k nearest if anything is said of k or divisor [default: render.gather of the scene]
+    #[arg(long, value_name = "G", value_parser = PossibleValuesParser::new(["auto", "knn", "lattice", "bounce"]))]
     pub gather: Option<String>,
 
     /// Cells of the lattice along its longest side [default: by the number of photons]
     #[arg(long, value_name = "CELLS", value_parser = parse_count)]
     pub lattice: Option<u64>,
+
+    /// Collisions of a path before it ends in the lattice, with --gather bounce [default: render.bounces of the scene, 8]
+    #[arg(long, value_name = "J", value_parser = parse_count)]
+    pub bounces: Option<u64>,
+
+    /// Whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias;
+    /// auto smooths with --target-error or --time-budget [default: render.filter of the scene]
+    #[arg(long, value_name = "F", value_parser = PossibleValuesParser::new(["auto", "on", "off"]))]
+    pub filter: Option<String>,
 
     /// Rays a pixel and pass [default: render.samples_per_pixel of the scene]
     #[arg(long, value_name = "N", value_parser = parse_count)]
@@ -328,6 +337,8 @@ impl RenderArguments {
             resolution: self.resolution,
             gather: self.gather.clone(),
             lattice: self.lattice,
+            bounces: self.bounces,
+            filter: self.filter.clone(),
             samples_per_pixel: self.samples,
             photons_only: self.photons_only.then_some(true),
             sdf_to_fog: self.sdf_to_fog.then_some(true),

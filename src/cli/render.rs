@@ -65,6 +65,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         cpu_seconds: cpu_seconds(),
         peak_memory_bytes: peak_memory_bytes(),
         estimated_relative_error: made.error.map(|error| error.total()),
+        filter_radius: made.filter_radius,
         estimated_error: made.error.map(Into::into),
         comparison: None,
     };
@@ -79,7 +80,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     summary.times(&report.seconds, &report.photons);
     report.calibration.iter().for_each(|calibration| summary.calibration(calibration));
     summary.truncated(&report.power, scene.photons.max_order);
-    made.error.iter().for_each(|error| summary.error(made.passes_done, error));
+    summary.error(made);
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
     summary.written(arguments);
     Ok(())

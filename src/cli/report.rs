@@ -35,6 +35,8 @@ pub struct Report {
     pub peak_memory_bytes: Option<u64>,
     /// Of the image, from how its passes differ: root mean square over the mean. Two passes at least.
     pub estimated_relative_error: Option<f64>,
+    /// Radius of the window that multiple scattering was filtered in \[pixels\]: 0 where it was not.
+    pub filter_radius: usize,
     /// What it is made of.
     pub estimated_error: Option<EstimatedError>,
     /// Against the reference, if one was given.

@@ -1,6 +1,6 @@
 //! What a render says to people, on stderr.
 
-use photonvdb::render::ErrorEstimate;
+use photonvdb::render::RenderReport;
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
@@ -27,10 +27,16 @@ impl Summary {
     }
 
     /// How far the image is from the truth, by its own account.
-    pub fn error(self, passes_done: u32, error: &ErrorEstimate) {
+    pub fn error(self, made: &RenderReport) {
+        let Some(error) = made.error else { return };
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+        let filter = match made.filter_radius {
+            0 => String::new(),
+            radius => format!("; multiple scattering filtered over {radius} pixels"),
+        };
         self.line(&format!(
-            "{passes_done} passes: estimated error {} of the mean (noise {}, bias {})",
+            "{} passes: estimated error {} of the mean (noise {}, bias {}){filter}",
+            made.passes_done,
             percent(error.total()),
             percent(error.noise),
             percent(error.bias)

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::lattice::{CellLight, LatticeShape};
+use crate::lattice::{CellSum, LatticeShape};
 use crate::math::DVec3;
 
 /// The cells of a lattice.
@@ -18,7 +18,7 @@ pub struct Cells<L> {
 /// Cells that one task adds up.
 const SHARE: usize = 1 << 14;
 
-impl<L: CellLight> Cells<L> {
+impl<L: CellSum> Cells<L> {
     /// The sum of deposits of equal shape.
     pub fn from_sums(shape: &LatticeShape, mut sums: Vec<Vec<L>>) -> Self {
         let factor = (1.0 / shape.cell_volume()) as f32;
@@ -118,7 +118,7 @@ impl<L: CellLight> Cells<L> {
 
 /// Trilinear interpolation in the cube of cells whose lowest is `first`.
 #[inline]
-fn blend<L: CellLight>(cells: &[L], first: usize, strides: [usize; 3], weight: [f32; 3]) -> L {
+fn blend<L: CellSum>(cells: &[L], first: usize, strides: [usize; 3], weight: [f32; 3]) -> L {
     let Some(cube) = cells.get(first..=first + strides.iter().sum::<usize>()) else {
         return L::default();
     };

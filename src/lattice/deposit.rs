@@ -1,13 +1,22 @@
-//! Photons' flights into a lattice.
+//! Photons' flights into a lattice: weighted for one camera, or with their direction for any.
 
 use crate::lattice::walk::walk_cells;
-use crate::lattice::{CellLight, LatticeShape};
+use crate::lattice::{CellLight, CellSum, DirectedLight, LatticeShape};
 use crate::math::{DVec3, Ray, Rgb, Span};
 use crate::medium::{Extinction, Phase};
 use crate::trace::Keep;
 
-/// Takes flights: adds power times length, weighted by how much of it would scatter towards the camera, to the cells crossed.
-pub struct Deposit<'a, E, L> {
+/// What takes flights into a lattice.
+pub trait Deposit: Keep {
+    /// What a cell holds.
+    type Cell: CellSum;
+
+    /// What was added to each cell, x fastest.
+    fn into_sums(self) -> Vec<Self::Cell>;
+}
+
+/// Takes flights for one camera: adds power times length, weighted by how much of it would scatter towards the camera, to the cells crossed.
+pub struct CameraDeposit<'a, E, L> {
     shape: &'a LatticeShape,
     extinction: &'a E,
     phase: Phase,
@@ -17,20 +26,23 @@ pub struct Deposit<'a, E, L> {
     sums: Vec<L>,
 }
 
-impl<'a, E: Extinction, L: CellLight> Deposit<'a, E, L> {
+impl<'a, E: Extinction, L: CellLight> CameraDeposit<'a, E, L> {
     /// An empty lattice.
     pub fn new(shape: &'a LatticeShape, extinction: &'a E, phase: Phase, camera: DVec3) -> Self {
         let sums = vec![L::default(); shape.cell_count()];
         Self { shape, extinction, phase, camera, sums }
     }
+}
 
-    /// What was added to each cell, x fastest.
-    pub fn into_sums(self) -> Vec<L> {
+impl<E: Extinction, L: CellLight> Deposit for CameraDeposit<'_, E, L> {
+    type Cell = L;
+
+    fn into_sums(self) -> Vec<L> {
         self.sums
     }
 }
 
-impl<E: Extinction, L: CellLight> Keep for Deposit<'_, E, L> {
+impl<E: Extinction, L: CellLight> Keep for CameraDeposit<'_, E, L> {
     const FLIGHTS: bool = true;
 
     fn flight(&mut self, ray: &Ray, flight: Span, power: Rgb, _order: u32) {
@@ -57,6 +69,51 @@ impl<E: Extinction, L: CellLight> Keep for Deposit<'_, E, L> {
                 L::from_rgb(power * colour * weight)
             } else {
                 light * weight as f32
+            };
+        });
+    }
+
+    fn collision(&mut self, _: &Ray, _: Rgb, _: u32) {}
+}
+
+/// Takes flights for any direction: adds power times length, and its direction, to the cells crossed.
+pub struct DirectedDeposit<'a, E, L> {
+    shape: &'a LatticeShape,
+    extinction: &'a E,
+    /// Power times length a cell \[W m\].
+    sums: Vec<DirectedLight<L>>,
+}
+
+impl<'a, E: Extinction, L: CellLight> DirectedDeposit<'a, E, L> {
+    /// An empty lattice.
+    pub fn new(shape: &'a LatticeShape, extinction: &'a E) -> Self {
+        let sums = vec![DirectedLight::default(); shape.cell_count()];
+        Self { shape, extinction, sums }
+    }
+}
+
+impl<E: Extinction, L: CellLight> Deposit for DirectedDeposit<'_, E, L> {
+    type Cell = DirectedLight<L>;
+
+    fn into_sums(self) -> Vec<DirectedLight<L>> {
+        self.sums
+    }
+}
+
+impl<E: Extinction, L: CellLight> Keep for DirectedDeposit<'_, E, L> {
+    const FLIGHTS: bool = true;
+
+    fn flight(&mut self, ray: &Ray, flight: Span, power: Rgb, _order: u32) {
+        let Self { shape, extinction, sums } = self;
+        let light = DirectedLight::along(ray.direction, L::from_rgb(power));
+        walk_cells(shape, ray, flight, |cell, enters, leaves| {
+            let length = (leaves - enters) as f32;
+            sums[cell] += if E::IS_CHROMATIC {
+                let middle = 0.5 * (enters + leaves);
+                let colour = extinction.flying_weight(middle - flight.start, power);
+                DirectedLight::along(ray.direction, L::from_rgb(power * colour)) * length
+            } else {
+                light * length
             };
         });
     }

@@ -3,7 +3,8 @@
 //! The fluence in a cell of volume V is the sum of power times length over the flights in it, over V (the track-length
 //! estimator). It needs no collision: photons that only pass count as well, and cells of thin medium are as well known as those of
 //! dense. With every flight weighted by the phase function towards the camera the cell holds in-scattered radiance per
-//! sigma_s, one number a channel whatever the phase function. Between cells light is interpolated, after
+//! sigma_s, one number a channel whatever the phase function; where light is wanted in other directions, cells hold fluence and
+//! vector irradiance, which serve any direction to the first order of spherical harmonics. Between cells light is interpolated, after
 //! [`Cells::sharpened`] has taken back what that flattens; what is left vanishes as cells shrink.
 //!
 //! Every task fills a lattice of its own, and they are added in order: results do not depend on the number of threads.
@@ -15,21 +16,29 @@ mod shape;
 mod walk;
 
 pub use cells::Cells;
-pub use deposit::Deposit;
-pub use light::CellLight;
+pub use deposit::{CameraDeposit, Deposit, DirectedDeposit};
+pub use light::{CellLight, CellSum, DirectedLight};
 pub use shape::LatticeShape;
 
 use glam::Vec3A;
 
 use crate::math::{DVec3, Rgb};
+use crate::medium::Phase;
 
-/// In-scattered radiance per sigma_s towards one camera, in cells and in cells twice as long.
+/// Cells, and cells twice as long.
+type Levels<L> = [Cells<L>; 2];
+
+/// Light in cells.
 #[derive(Debug)]
 pub enum LightLattice {
-    /// The same in all channels.
-    Grey([Cells<f32>; 2]),
+    /// In-scattered radiance per sigma_s towards one camera, the same in all channels.
+    Grey(Levels<f32>),
     /// Of three channels.
-    Colored([Cells<Vec3A>; 2]),
+    Colored(Levels<Vec3A>),
+    /// Fluence and its direction, from which that radiance follows in any direction: the same in all channels.
+    DirectedGrey(Levels<DirectedLight<f32>>),
+    /// Of three channels.
+    DirectedColored(Levels<DirectedLight<Vec3A>>),
 }
 
 impl LightLattice {
@@ -38,23 +47,34 @@ impl LightLattice {
         match self {
             Self::Grey([fine, _]) => &fine.shape,
             Self::Colored([fine, _]) => &fine.shape,
+            Self::DirectedGrey([fine, _]) => &fine.shape,
+            Self::DirectedColored([fine, _]) => &fine.shape,
         }
     }
 
-    /// Radiance scattered towards the camera at a place, per sigma_s \[W/(m^2 sr)\].
+    /// Radiance scattered at a place into a direction of travel, per sigma_s \[W/(m^2 sr)\]: the camera's, unless the light's own direction
+    /// is known; then by the phase function.
     #[inline]
-    pub fn at(&self, position: DVec3) -> Rgb {
-        match self {
-            Self::Grey([fine, _]) => fine.at(position).rgb(),
-            Self::Colored([fine, _]) => fine.at(position).rgb(),
-        }
+    pub fn scattered(&self, place: DVec3, towards: DVec3, phase: Phase) -> Rgb {
+        self.at_level(0, place, towards, phase)
     }
 
     /// The same from the cells twice as long.
-    pub fn coarse_at(&self, position: DVec3) -> Rgb {
+    pub fn coarse_scattered(&self, place: DVec3, towards: DVec3, phase: Phase) -> Rgb {
+        self.at_level(1, place, towards, phase)
+    }
+
+    #[inline]
+    fn at_level(&self, level: usize, place: DVec3, towards: DVec3, phase: Phase) -> Rgb {
         match self {
-            Self::Grey([_, coarse]) => coarse.at(position).rgb(),
-            Self::Colored([_, coarse]) => coarse.at(position).rgb(),
+            Self::Grey(levels) => levels[level].at(place).rgb(),
+            Self::Colored(levels) => levels[level].at(place).rgb(),
+            Self::DirectedGrey(levels) => {
+                levels[level].at(place).scattered(towards, phase.mean_cosine())
+            }
+            Self::DirectedColored(levels) => {
+                levels[level].at(place).scattered(towards, phase.mean_cosine())
+            }
         }
     }
 }
@@ -91,7 +111,10 @@ mod tests {
             DVec3::new(0.01, 0.52, 1.7),
             DVec3::new(-0.99, 0.5, 2.49),
         ] {
-            for found in [lattice.at(place), lattice.coarse_at(place)] {
+            for found in [
+                lattice.scattered(place, DVec3::X, Phase::Isotropic),
+                lattice.coarse_scattered(place, DVec3::X, Phase::Isotropic),
+            ] {
                 assert!((found.x - value(place)).abs() < 1e-5, "{place}: {found}");
                 assert_eq!(found.x, found.z);
             }
@@ -138,7 +161,10 @@ mod tests {
         for direction in [DVec3::X, DVec3::NEG_Y, DVec3::ONE.normalize()] {
             for radius in [0.0, 1.0, 1.9, 1.999] {
                 let place = DVec3::new(5.0, 0.0, 0.0) + direction * radius;
-                for found in [lattice.at(place), lattice.coarse_at(place)] {
+                for found in [
+                    lattice.scattered(place, DVec3::X, Phase::Isotropic),
+                    lattice.coarse_scattered(place, DVec3::X, Phase::Isotropic),
+                ] {
                     let error = (found - Rgb::new(3.0, 1.0, 0.0)).abs().max_element();
                     assert!(error < 1e-4, "{place}: {found}");
                 }

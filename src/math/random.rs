@@ -27,6 +27,8 @@ pub enum Stream {
     Reference = 7,
     /// Photons drawn anew to see how their number in a ball varies.
     Calibration = 8,
+    /// Camera paths that end in a lattice.
+    Bounce = 9,
 }
 
 impl Stream {

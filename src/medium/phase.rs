@@ -34,6 +34,14 @@ impl Phase {
         }
     }
 
+    /// Mean cosine of the scattering angle: what is kept of a direction.
+    pub fn mean_cosine(self) -> f64 {
+        match self {
+            Self::Isotropic => 0.0,
+            Self::HenyeyGreenstein { g } => g,
+        }
+    }
+
     /// The density of scattering by an angle of the given cosine \[1/sr\]; 0 where all light goes one way.
     #[inline]
     pub fn density(self, cosine: f64) -> f64 {

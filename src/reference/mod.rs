@@ -29,7 +29,7 @@ use crate::film::Film;
 use crate::math::{DVec2, Random, Ray, Stream, mean_channel};
 use crate::medium::{Bounds, Extinction, MediumExtinction};
 use crate::scene::Scene;
-use path::PathTracer;
+pub(crate) use path::PathTracer;
 use pixel_places::PixelPlaces;
 use running_pixel::add_sample;
 use segment::peak_of;

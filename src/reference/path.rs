@@ -59,12 +59,32 @@ impl PathLight {
     }
 }
 
+/// What a flight finds, each to be multiplied by the throughput before it \[W/(m^2 sr)\].
+struct Flown {
+    /// Light of near lights, scattered on the way.
+    near: Rgb,
+    /// Light of the medium itself.
+    glow: Rgb,
+    collision: Option<Collision>,
+}
+
+/// Where a flight ends.
+struct Collision {
+    place: DVec3,
+    /// After it.
+    throughput: Rgb,
+    /// Of all lights, scattered here; to be multiplied by the throughput after it.
+    light: Rgb,
+}
+
 /// Traces paths, from one thread.
-pub(super) struct PathTracer<'a, E> {
+pub(crate) struct PathTracer<'a, E> {
     medium: &'a Medium,
     extinction: &'a E,
     lights: &'a [Light],
     has_environment: bool,
+    /// Whether a ray may meet a light.
+    has_extended: bool,
     /// For each light, sampling of distances on the current segment.
     towards: Vec<Option<EquiAngular>>,
     /// For each light, the density of all ways that find the last collision over that of the flight.
@@ -72,13 +92,14 @@ pub(super) struct PathTracer<'a, E> {
 }
 
 impl<'a, E: Extinction> PathTracer<'a, E> {
-    pub(super) fn new(scene: &'a Scene, extinction: &'a E) -> Self {
+    pub(crate) fn new(scene: &'a Scene, extinction: &'a E) -> Self {
         let lights = &scene.lights;
         Self {
             medium: &scene.medium,
             extinction,
             lights,
             has_environment: lights.iter().any(|light| matches!(light, Light::Environment(_))),
+            has_extended: lights.iter().any(is_extended),
             towards: vec![None; lights.len()],
             ways: vec![1.0; lights.len()],
         }
@@ -91,12 +112,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         for order in 0.. {
             let span = self.medium.bounds.intersect(&ray);
             let needs_whole = order == 0 || self.has_environment;
-            let whole = match span {
-                Some(span) if needs_whole => {
-                    self.extinction.estimate_transmittance(&ray, span, random)
-                }
-                _ => Rgb::ONE,
-            };
+            let whole = if needs_whole { self.whole(&ray, span, random) } else { Rgb::ONE };
             if order == 0 {
                 seen.transmittance = whole;
             }
@@ -104,22 +120,14 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             let Some(span) = span else { break };
             let (medium, extinction) = (self.medium, self.extinction);
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
-            seen.add(order + 1, throughput * self.near_lights(&segment, random));
-            let flight = extinction.sample_flight(&ray, span, throughput, random);
-            let (distance, weight) = match flight {
-                Flight::Escape { .. } => (span.end, None),
-                Flight::Collision { distance, weight } => (distance, Some(weight)),
-            };
-            seen.add_glow(order, throughput * glow(&segment, distance, random));
-            let Some(weight) = weight else { break };
+            let found = self.fly(&segment, random);
+            seen.add(order + 1, throughput * found.near);
+            seen.add_glow(order, throughput * found.glow);
+            let Some(collision) = found.collision else { break };
 
-            let place = ray.at(distance);
-            throughput *= weight * medium.albedo_at(place);
-            if throughput == Rgb::ZERO {
-                break;
-            }
-            seen.add(order + 1, throughput * self.lights_at(&segment, distance, random));
-            let aimed = self.aimed_light(place, ray.direction, throughput, random);
+            throughput = collision.throughput;
+            seen.add(order + 1, throughput * collision.light);
+            let aimed = self.aimed_light(collision.place, ray.direction, throughput, random);
             seen.add(order + 2, throughput * aimed);
             match roulette(throughput, random) {
                 Some(survivor) => throughput = survivor,
@@ -127,9 +135,84 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             }
             let direction = medium.phase.sample_direction(ray.direction, random);
             phase_density = Some(medium.phase.density(direction.dot(ray.direction)));
-            ray = Ray::new(place, direction);
+            ray = Ray::new(collision.place, direction);
         }
         seen
+    }
+
+    /// An estimate of the radiance that light of at least one earlier scattering makes when it is scattered at a place into the direction of
+    /// travel `towards`, per sigma_s: by a path of up to `bounces` collisions, at the last of which `end` knows the same of that place.
+    pub(crate) fn scattered_light(
+        &mut self,
+        place: DVec3,
+        towards: DVec3,
+        bounces: u32,
+        random: &mut Random,
+        mut end: impl FnMut(DVec3, DVec3) -> Rgb,
+    ) -> Rgb {
+        let (medium, extinction) = (self.medium, self.extinction);
+        let mut sum = Rgb::ZERO;
+        let (mut throughput, mut place, mut direction) = (Rgb::ONE, place, -towards);
+        for bounce in 0..=bounces {
+            if bounce == bounces {
+                sum += throughput * end(place, -direction);
+            } else {
+                sum += throughput * self.aimed_light(place, direction, throughput, random);
+            }
+            let before = direction;
+            direction = medium.phase.sample_direction(before, random);
+            let ray = Ray::new(place, direction);
+            let phase_density = Some(medium.phase.density(direction.dot(before)));
+            let span = medium.bounds.intersect(&ray);
+            // Lights that the first ray meets are scattered but once.
+            if bounce > 0 && self.has_extended {
+                let whole = match self.has_environment {
+                    true => self.whole(&ray, span, random),
+                    false => Rgb::ONE,
+                };
+                sum += throughput * self.lights_along(&ray, phase_density, whole, random);
+            }
+            let Some(span) = span.filter(|_| bounce < bounces) else { break };
+            let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
+            let found = self.fly(&segment, random);
+            sum += throughput * (found.near + found.glow);
+            let Some(collision) = found.collision else { break };
+            throughput = collision.throughput;
+            sum += throughput * collision.light;
+            match roulette(throughput, random) {
+                Some(survivor) => throughput = survivor,
+                None => break,
+            }
+            place = collision.place;
+        }
+        sum
+    }
+
+    /// A free flight along a segment.
+    fn fly(&mut self, segment: &Segment<E>, random: &mut Random) -> Flown {
+        let near = self.near_lights(segment, random);
+        let Segment { ray, span, throughput, .. } = segment;
+        let flight = self.extinction.sample_flight(ray, *span, *throughput, random);
+        let (distance, weight) = match flight {
+            Flight::Escape { .. } => (span.end, None),
+            Flight::Collision { distance, weight } => (distance, Some(weight)),
+        };
+        let glow = glow(segment, distance, random);
+        let collision = weight.and_then(|weight| {
+            let place = ray.at(distance);
+            let throughput = *throughput * weight * self.medium.albedo_at(place);
+            let scatters = throughput != Rgb::ZERO;
+            scatters.then(|| {
+                let light = self.lights_at(segment, distance, random);
+                Collision { place, throughput, light }
+            })
+        });
+        Flown { near, glow, collision }
+    }
+
+    /// Transmittance of a whole ray, of which `span` is in the medium.
+    fn whole(&self, ray: &Ray, span: Option<Span>, random: &mut Random) -> Rgb {
+        span.map_or(Rgb::ONE, |span| self.extinction.estimate_transmittance(ray, span, random))
     }
 
     /// Lights that the ray meets, weighed against sampling them from its start. `whole` is the transmittance of the whole ray.
@@ -273,6 +356,11 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let before = inside.and_then(|span| span.intersect(Span::new(0.0, distance)));
         before.map_or(Rgb::ONE, |span| self.extinction.estimate_transmittance(&ray, span, random))
     }
+}
+
+/// Whether a ray may meet the light.
+fn is_extended(light: &Light) -> bool {
+    matches!(light, Light::Environment(_) | Light::Quad(_) | Light::Sphere(_))
 }
 
 /// The throughput of a survivor.

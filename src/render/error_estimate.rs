@@ -7,6 +7,7 @@
 
 use crate::film::Film;
 use crate::math::mean_channel;
+use crate::render::regression::Halves;
 
 /// Pixels whose coordinates are both this modulo [`PROBE_STEP`] are probed.
 const PROBE_OFFSET: usize = 1;
@@ -74,8 +75,15 @@ impl ErrorProbes {
         Some(ErrorEstimate { noise: self.noise() / mean, bias: self.bias() / mean })
     }
 
+    /// The means of both halves' passes; `None` until both have one.
+    pub fn halves(&self) -> Option<Halves<'_>> {
+        let [even, odd] = &self.halves;
+        let known = !self.counts.contains(&0);
+        known.then_some(Halves { films: [even, odd], counts: self.counts })
+    }
+
     /// Mean channel of all pixels and passes.
-    fn mean(&self) -> f64 {
+    pub fn mean(&self) -> f64 {
         let of_half = |half: &Film| -> f64 {
             half.pixels.iter().map(|pixel| mean_channel(pixel.radiance())).sum()
         };

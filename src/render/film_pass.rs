@@ -178,16 +178,20 @@ impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
         }
         let share = 1.0 / self.pass.samples_per_pixel as f64;
         for query in &queries {
-            let scattered = self.reader.answer(query);
             let made = &mut self.pixels[query.pixel as usize];
+            let scattered = match &mut made.coarse_difference {
+                None => self.reader.answer(query),
+                Some(sum) => {
+                    let (scattered, coarse) = self.reader.compared_answer(query);
+                    *sum += mean_channel(coarse) * share;
+                    scattered
+                }
+            };
             made.pixel.single_scatter += scattered.single * share;
             made.pixel.multiple_scatter += scattered.multiple * share;
             made.pixel.photon_count += scattered.photon_count as f64;
             made.pixel.kernel_radius += scattered.radius;
             made.query_count += 1;
-            if let Some(sum) = &mut made.coarse_difference {
-                *sum += mean_channel(self.reader.coarse_answer(query) - scattered.multiple) * share;
-            }
         }
         queries.clear();
         self.queries = queries;

@@ -3,7 +3,11 @@
 use std::time::Instant;
 
 use crate::emission::{Emission, EmissionSettings};
-use crate::lattice::{CellLight, Cells, Deposit, LatticeShape, LightLattice};
+use glam::Vec3A;
+
+use crate::lattice::{
+    CameraDeposit, CellLight, Cells, Deposit, DirectedDeposit, LatticeShape, LightLattice,
+};
 use crate::medium::Extinction;
 use crate::render::lit_medium::{scene_emission, trace_settings};
 use crate::render::{Observer, RenderError, RenderReport, Stage};
@@ -39,6 +43,15 @@ pub fn emission<'a, E: Extinction>(scene: &'a Scene, extinction: &E, photons: u6
     scene_emission(scene, extinction, settings)
 }
 
+/// Who reads a lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadFrom {
+    /// The camera alone.
+    Camera,
+    /// Places all over the medium, in any direction.
+    Anywhere,
+}
+
 /// Traces the photons of one pass into a lattice. Adds to `report`.
 ///
 /// # Errors
@@ -47,16 +60,25 @@ pub fn trace<E: Extinction>(
     scene: &Scene,
     extinction: &E,
     emission: &Emission,
-    resolution: usize,
+    (resolution, from): (usize, ReadFrom),
     observer: &dyn Observer,
     report: &mut RenderReport,
 ) -> Result<LightLattice, RenderError> {
     let bounds = &scene.medium.bounds;
     let shape = LatticeShape::new(bounds, resolution).ok_or(RenderError::InfiniteMedium)?;
     let mut fill = Fill { scene, extinction, emission, shape: &shape, observer, report };
-    Ok(match scene.is_grey() && !E::IS_CHROMATIC {
-        true => LightLattice::Grey(fill.levels()),
-        false => LightLattice::Colored(fill.levels()),
+    let is_grey = scene.is_grey() && !E::IS_CHROMATIC;
+    // What scatters all ways alike is the same from anywhere.
+    let is_directed = from == ReadFrom::Anywhere && !scene.medium.phase.is_isotropic();
+    Ok(match (is_grey, is_directed) {
+        (true, false) => LightLattice::Grey(fill.towards_camera::<f32>()),
+        (false, false) => LightLattice::Colored(fill.towards_camera::<Vec3A>()),
+        (true, true) => LightLattice::DirectedGrey(
+            fill.levels(|| DirectedDeposit::<E, f32>::new(&shape, extinction)),
+        ),
+        (false, true) => LightLattice::DirectedColored(
+            fill.levels(|| DirectedDeposit::<E, Vec3A>::new(&shape, extinction)),
+        ),
     })
 }
 
@@ -71,15 +93,19 @@ struct Fill<'a, E> {
 }
 
 impl<E: Extinction> Fill<'_, E> {
-    fn levels<L: CellLight>(&mut self) -> [Cells<L>; 2] {
+    fn towards_camera<L: CellLight>(&mut self) -> [Cells<L>; 2] {
+        let (shape, extinction, phase) = (self.shape, self.extinction, self.scene.medium.phase);
+        let camera = self.scene.camera.position();
+        self.levels(|| CameraDeposit::<E, L>::new(shape, extinction, phase, camera))
+    }
+
+    fn levels<D: Deposit>(&mut self, deposit: impl Fn() -> D) -> [Cells<D::Cell>; 2] {
         let Self { scene, extinction, emission, shape, observer, report } = self;
         let started = Instant::now();
         let medium = &scene.medium;
         observer.stage_started(Stage::Trace, emission.count());
         let tasks = (emission.count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);
-        let camera = scene.camera.position();
-        let deposit = |_| Deposit::<E, L>::new(shape, *extinction, medium.phase, camera);
-        let deposits = (0..tasks).map(deposit).collect();
+        let deposits = (0..tasks).map(|_| deposit()).collect();
         let settings = trace_settings(scene);
         let advanced = |steps| observer.advanced(steps);
         let (deposits, balance) =

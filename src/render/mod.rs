@@ -17,6 +17,7 @@ mod photon_query;
 mod pixel_peak;
 mod pixel_samples;
 mod reader;
+mod regression;
 mod report;
 mod scattered_light;
 mod shadow;

@@ -7,12 +7,15 @@ use crate::emission::Emission;
 use crate::film::Film;
 use crate::math::Stream;
 use crate::medium::Extinction;
+use crate::reference::PathTracer;
 use crate::render::error_estimate::ErrorProbes;
 use crate::render::film_pass::{FilmPass, PassFilm};
-use crate::render::scattered_light::ScatteredLight;
+use crate::render::lit_lattice::ReadFrom;
+use crate::render::regression::Filtered;
+use crate::render::scattered_light::{BouncedReader, LatticeReader, ScatteredLight};
 use crate::render::{
-    Gather, LitMedium, Observer, Reader, RenderError, RenderOptions, RenderReport, Rendering,
-    Stage, lit_lattice,
+    ErrorEstimate, Gather, LitMedium, Observer, Reader, RenderError, RenderOptions, RenderReport,
+    Rendering, Stage, lit_lattice,
 };
 use crate::scene::Scene;
 
@@ -25,6 +28,9 @@ const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
 /// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
 const POINTS_A_RAY: usize = 4;
 
+/// Paths a ray of such a pass, which cost many times what a point does.
+const PATHS_A_RAY: usize = 2;
+
 /// What the estimated bias is off by, as a share of the estimated noise.
 const BIAS_NOISE: f64 = 0.1;
 
@@ -33,6 +39,9 @@ const FEWEST_OF_K: usize = 8;
 
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
+
+/// Factor on the passes after which the error is measured again: that of the filter takes time.
+const MEASURE_STEP: f64 = 1.1;
 
 /// The share of the error asked for that may be bias.
 const BIAS_SHARE: f64 = 0.6;
@@ -46,19 +55,28 @@ pub struct Passes<'a, E> {
     started: Instant,
     strategy: Strategy<'a>,
     samples_per_pixel: usize,
-    /// Points a ray.
-    most_samples: usize,
+    /// Points a ray, of single and of multiple scattering.
+    most_samples: [usize; 2],
     /// Passes begun, with those that a finer lattice replaced.
     begun: u32,
     film: Film,
     probes: ErrorProbes,
+    /// Of the image that the filter makes, once it is tried.
+    filtered: Option<Filtered>,
+    /// Passes at which the error is next measured.
+    next_measure: u32,
     report: RenderReport,
 }
 
 /// Where scattered light is gathered from.
 enum Strategy<'a> {
     Knn,
-    Lattice { emission: Emission<'a>, resolution: usize },
+    Lattice {
+        emission: Emission<'a>,
+        resolution: usize,
+        /// Collisions of paths that end in it; `None`: it is read where the camera looks.
+        bounces: Option<u32>,
+    },
 }
 
 impl<'a, E: Extinction> Passes<'a, E> {
@@ -73,7 +91,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let mut samples_per_pixel = scene.render.samples_per_pixel;
         let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
-            Gather::Lattice => {
+            Gather::Lattice | Gather::Bounce => {
                 let photons = photons_per_pass(scene, options);
                 let mut total = photons.saturating_mul(u64::from(options.passes));
                 if is_limited {
@@ -83,7 +101,9 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 let emission = lit_lattice::emission(scene, extinction, photons);
                 let resolution = scene.render.lattice;
                 let resolution = resolution.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
-                Strategy::Lattice { emission, resolution }
+                let bounces = scene.render.bounces;
+                let bounces = (scene.render.gather == Gather::Bounce).then_some(bounces);
+                Strategy::Lattice { emission, resolution, bounces }
             }
         };
         Self {
@@ -94,10 +114,16 @@ impl<'a, E: Extinction> Passes<'a, E> {
             started: Instant::now(),
             strategy,
             samples_per_pixel,
-            most_samples: if is_limited { POINTS_A_RAY } else { usize::MAX },
+            most_samples: match (is_limited, scene.render.gather) {
+                (true, Gather::Bounce) => [POINTS_A_RAY, PATHS_A_RAY],
+                (true, _) => [POINTS_A_RAY; 2],
+                (false, _) => [usize::MAX; 2],
+            },
             begun: 0,
             film: Film::new(scene.camera.width, scene.camera.height),
             probes: ErrorProbes::new(scene.camera.width, scene.camera.height),
+            filtered: None,
+            next_measure: 2,
             report: RenderReport::default(),
         }
     }
@@ -106,13 +132,54 @@ impl<'a, E: Extinction> Passes<'a, E> {
     pub fn run(mut self) -> Result<Rendering, RenderError> {
         loop {
             self.add_pass()?;
-            self.report.error = self.probes.error();
-            self.observer.pass_finished(self.report.passes_done, self.report.error);
-            if self.is_done() || self.observer.cancelled() {
-                return Ok(Rendering { film: self.film, report: self.report });
+            let (done, cancelled) = (self.report.passes_done, self.observer.cancelled());
+            let is_last = cancelled || self.is_out_of_passes();
+            if done >= self.next_measure || is_last {
+                self.measure();
+                self.next_measure = (f64::from(done) * MEASURE_STEP).ceil() as u32;
+            }
+            self.observer.pass_finished(done, self.report.error);
+            if is_last || self.is_on_target() {
+                return Ok(self.finish());
             }
             self.refine();
         }
+    }
+
+    /// Measures the error of the image, filtered where that is less.
+    fn measure(&mut self) {
+        let Some(error) = self.probes.error() else { return };
+        self.report.error = Some(error);
+        if !self.filters() {
+            return;
+        }
+        let Some(halves) = self.probes.halves() else { return };
+        let unfiltered = ErrorEstimate { bias: 0.0, ..error };
+        let filtered = halves.filtered(unfiltered, self.probes.mean());
+        let ErrorEstimate { noise, bias } = filtered.error;
+        self.report.error = Some(ErrorEstimate { noise, bias: bias.hypot(error.bias) });
+        self.filtered = Some(filtered);
+    }
+
+    /// Whether the filter is asked for, and has something to go by.
+    fn filters(&self) -> bool {
+        let asked = self.scene.render.filter.unwrap_or(self.options.has_limit());
+        asked && !self.scene.render.photons_only && self.probes.mean() > 0.0
+    }
+
+    /// The image, filtered if the filter pays.
+    fn finish(mut self) -> Rendering {
+        let unfiltered = self.probes.error().map_or(0.0, |error| error.noise);
+        if let Some(filtered) = self.filtered.filter(|filtered| filtered.radius > 0) {
+            // Pixel by pixel the filter's noise is not known: on the whole it is that much less.
+            let ratio = (filtered.error.noise / unfiltered).powi(2).min(1.0);
+            for (pixel, multiple) in self.film.pixels.iter_mut().zip(filtered.multiple) {
+                pixel.multiple_scatter = multiple;
+                pixel.variance *= ratio;
+            }
+            self.report.filter_radius = filtered.radius;
+        }
+        Rendering { film: self.film, report: self.report }
     }
 
     fn add_pass(&mut self) -> Result<(), RenderError> {
@@ -134,7 +201,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 }
                 gather(&film_pass, || lit.reader(), *observer, report)
             }
-            Strategy::Lattice { emission, resolution } => {
+            Strategy::Lattice { emission, resolution, bounces } => {
                 emission.reseed(seed);
                 // Beyond the photons that it was chosen for cells go on shrinking.
                 let emitted = emission.count().saturating_mul(u64::from(self.begun) + 1);
@@ -142,18 +209,36 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     true => lit_lattice::resolution::<E>(emitted),
                     false => 0,
                 };
-                let lattice = lit_lattice::trace(
+                let from = if bounces.is_some() { ReadFrom::Anywhere } else { ReadFrom::Camera };
+                let resolution = grown.max(*resolution);
+                let lattice = &lit_lattice::trace(
                     scene,
                     *extinction,
                     emission,
-                    grown.max(*resolution),
+                    (resolution, from),
                     *observer,
                     report,
                 )?;
-                let most_samples = self.most_samples;
-                let reader =
-                    || Reader::new(scene, *extinction, &lattice).with_most_samples(most_samples);
-                gather(&film_pass, reader, *observer, report)
+                let (most_samples, phase) = (self.most_samples, scene.medium.phase);
+                let lattice = || LatticeReader { lattice, phase };
+                match *bounces {
+                    None => {
+                        let reader = || {
+                            Reader::new(scene, *extinction, lattice())
+                                .with_most_samples(most_samples)
+                        };
+                        gather(&film_pass, reader, *observer, report)
+                    }
+                    Some(bounces) => {
+                        let reader = || {
+                            let paths = PathTracer::new(scene, *extinction);
+                            let lattice = lattice();
+                            let bounced = BouncedReader { lattice, paths, bounces, seed };
+                            Reader::new(scene, *extinction, bounced).with_most_samples(most_samples)
+                        };
+                        gather(&film_pass, reader, *observer, report)
+                    }
+                }
             }
         };
         self.begun += 1;
@@ -163,24 +248,26 @@ impl<'a, E: Extinction> Passes<'a, E> {
         Ok(())
     }
 
-    /// Whether a limit is reached.
-    fn is_done(&self) -> bool {
-        let done = self.report.passes_done;
-        let within = |target: f64| {
-            let error = self.report.error.map_or(f64::INFINITY, |error| error.total());
-            done >= FEWEST_FOR_ERROR && error <= target
+    /// Whether the image is as good as it is asked to be.
+    fn is_on_target(&self) -> bool {
+        let (Some(target), Some(error)) = (self.options.target_error, self.report.error) else {
+            return false;
         };
+        self.report.passes_done >= FEWEST_FOR_ERROR && error.total() <= target
+    }
+
+    /// Whether there is no pass or no time left.
+    fn is_out_of_passes(&self) -> bool {
         // A pass that would end too late is not begun.
         let seconds = self.started.elapsed().as_secs_f64();
         let next = seconds * f64::from(self.begun + 1) / f64::from(self.begun);
-        done >= self.options.passes
-            || self.options.target_error.is_some_and(within)
+        self.report.passes_done >= self.options.passes
             || self.options.seconds.is_some_and(|budget| next > budget)
     }
 
     /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
     fn refine(&mut self) {
-        let (Some(target), Some(error)) = (self.options.target_error, self.report.error) else {
+        let (Some(target), Some(error)) = (self.options.target_error, self.probes.error()) else {
             return;
         };
         let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
@@ -194,6 +281,8 @@ impl<'a, E: Extinction> Passes<'a, E> {
         *resolution = (finer as usize).min(lit_lattice::MAX_RESOLUTION);
         self.film = Film::new(self.film.width, self.film.height);
         self.probes = ErrorProbes::new(self.film.width, self.film.height);
+        self.filtered = None;
+        self.next_measure = FEWEST_FOR_ERROR;
         self.report.passes_done = 0;
     }
 }
@@ -202,7 +291,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
 /// suits the size of the image.
 pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
     let is_open = options.has_limit() && !scene.is_photon_count_given;
-    if is_open && scene.render.gather == Gather::Lattice {
+    if is_open && scene.render.gather != Gather::Knn {
         let [fewest, most] = PHOTONS_A_PASS;
         let pixels = (scene.camera.width * scene.camera.height) as u64;
         return (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);

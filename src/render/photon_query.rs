@@ -15,7 +15,7 @@ pub struct PhotonQuery {
     pub towards: DVec3,
     /// Factor on the light found, per channel.
     pub weight: Rgb,
-    /// Turn of the ball's quadrature, in \[0, 1).
+    /// A random number of the query's own, in \[0, 1): the turn of a ball's quadrature, or the seed of a path.
     pub turn: f64,
     /// The pixel that asks.
     pub pixel: u32,

@@ -40,7 +40,7 @@ pub struct Reader<'a, E, S> {
     scene: &'a Scene,
     extinction: &'a E,
     scattered_light: S,
-    most_samples: usize,
+    most_samples: [usize; 2],
     profile: RayProfile,
     queries: Vec<PhotonQuery>,
 }
@@ -56,11 +56,11 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     /// A reader, to which `scattered_light` says what is scattered more than once.
     pub fn new(scene: &'a Scene, extinction: &'a E, scattered_light: S) -> Self {
         let (profile, queries) = (RayProfile::default(), Vec::new());
-        Self { scene, extinction, scattered_light, most_samples: usize::MAX, profile, queries }
+        Self { scene, extinction, scattered_light, most_samples: [usize::MAX; 2], profile, queries }
     }
 
-    /// The same with no more than so many points a ray, where many rays share a pixel.
-    pub fn with_most_samples(mut self, most_samples: usize) -> Self {
+    /// The same with no more than so many points a ray, of single and of multiple scattering, where many rays share a pixel.
+    pub fn with_most_samples(mut self, most_samples: [usize; 2]) -> Self {
         self.most_samples = most_samples;
         self
     }
@@ -162,7 +162,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         random: &mut Random,
     ) -> Rgb {
         let scattering = self.scattering_ray(ray, span);
-        let samples = self.scene.render.light_samples.min(self.most_samples);
+        let samples = self.scene.render.light_samples.min(self.most_samples[0]);
         let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
         lights.map(|(_, light)| scattering.single_scatter(light, samples, phase, random)).sum()
     }
@@ -185,7 +185,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         random: &mut Random,
     ) {
         let Some(by_transmittance) = ByTransmittance::new(&self.profile, span) else { return };
-        let samples = self.scene.render.march_samples.min(self.most_samples);
+        let samples = self.scene.render.march_samples.min(self.most_samples[1]);
         let count = samples as f64;
         for stratum in 0..samples {
             let u = (stratum as f64 + phase) / count;
@@ -201,15 +201,18 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
 
     /// The answer to a query, weighted.
     pub fn answer(&mut self, query: &PhotonQuery) -> InScattered {
-        let mut scattered =
-            self.scattered_light.in_scattered(query.place, query.towards, query.turn);
-        scattered.single *= query.weight;
-        scattered.multiple *= query.weight;
-        scattered
+        weighted(self.scattered_light.in_scattered(query), query)
     }
 
-    /// The answer from cells twice as long, weighted.
-    pub fn coarse_answer(&self, query: &PhotonQuery) -> Rgb {
-        self.scattered_light.coarse_in_scattered(query.place) * query.weight
+    /// The same, and what cells twice as long would add to it.
+    pub fn compared_answer(&mut self, query: &PhotonQuery) -> (InScattered, Rgb) {
+        let (scattered, coarse) = self.scattered_light.compared(query);
+        (weighted(scattered, query), coarse * query.weight)
     }
+}
+
+fn weighted(mut scattered: InScattered, query: &PhotonQuery) -> InScattered {
+    scattered.single *= query.weight;
+    scattered.multiple *= query.weight;
+    scattered
 }

@@ -17,11 +17,12 @@ pub struct RenderReport {
     pub power: PowerBalance,
     /// Time of each stage \[s\].
     pub seconds: StageSeconds,
-    /// Passes that the image is the mean of.
     /// The numerator of estimates, where it is measured: before the first pass is read, and for all of them.
     pub calibration: Option<Calibration>,
     /// Passes completed.
     pub passes_done: u32,
+    /// Radius of the window that multiple scattering is filtered in \[pixels\]: 0 where it is not.
+    pub filter_radius: usize,
     /// What the passes say of the image's error; `None` from fewer than two.
     pub error: Option<ErrorEstimate>,
 }

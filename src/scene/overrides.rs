@@ -23,6 +23,10 @@ pub struct Overrides {
     pub gather: Option<String>,
     /// `render.lattice`
     pub lattice: Option<u64>,
+    /// `render.filter`, as the file spells it.
+    pub filter: Option<String>,
+    /// `render.bounces`
+    pub bounces: Option<u64>,
     /// `render.samples_per_pixel`
     pub samples_per_pixel: Option<u64>,
     /// `render.photons_only`
@@ -57,6 +61,8 @@ impl Overrides {
         set("estimate", "divisor", self.divisor.clone().map(Value::Text));
         set("render", "gather", self.gather.clone().map(Value::Text));
         set("render", "lattice", self.lattice.map(integer));
+        set("render", "bounces", self.bounces.map(integer));
+        set("render", "filter", self.filter.clone().map(Value::Text));
         set("render", "samples_per_pixel", self.samples_per_pixel.map(integer));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
         set("medium", "sdf_to_fog", self.sdf_to_fog.map(Value::Boolean));

@@ -100,6 +100,8 @@ pub(super) fn scene(
             march_samples: 8,
             light_samples: 4,
             gather: Gather::Knn,
+            bounces: 8,
+            filter: None,
             lattice: None,
             photons_only: false,
         },

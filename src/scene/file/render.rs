@@ -13,8 +13,10 @@ use crate::scene::error::Problem;
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
-/// | `gather` | `"auto"`, `"knn"`, `"lattice"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, else `"lattice"` |
+/// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, else `"lattice"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
+/// | `bounces` | integer | | 8 | 1 to 1024 | collisions of a path before it ends in the lattice, where `gather` is `"bounce"` |
+/// | `filter` | `"auto"`, `"on"`, `"off"` | | `"auto"` | | whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias; `"auto"` is `"on"` where the image is made to a target error or a time |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -29,6 +31,10 @@ pub struct RenderSettings {
     /// Cells of the lattice along its longest side; `None`: by the number of photons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<usize>,
+    /// Collisions of a path before it ends in the lattice.
+    pub bounces: u32,
+    /// Whether multiple scattering is filtered; `None`: where the image is made to a target error or a time.
+    pub filter: Option<bool>,
     /// Whether single scattering, too, comes from photons (for the lab).
     pub photons_only: bool,
 }
@@ -42,6 +48,8 @@ impl RenderSettings {
             "light_samples",
             "gather",
             "lattice",
+            "bounces",
+            "filter",
             "photons_only",
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
@@ -52,20 +60,32 @@ impl RenderSettings {
         let lattice: Option<u64> = table.get("lattice")?;
         let fits = lattice.is_none_or(|cells| (2..=512).contains(&cells));
         table.ensure("lattice", fits, "must lie in 2 to 512")?;
+        let bounces: u64 = table.get_or("bounces", 8)?;
+        table.ensure("bounces", (1..=1024).contains(&bounces), "must lie in 1 to 1024")?;
         Ok(Self {
             samples_per_pixel: read_count(table, "samples_per_pixel", 4)?,
             march_samples: read_count(table, "march_samples", 8)?,
             light_samples: read_count(table, "light_samples", 8)?,
             gather,
             lattice: lattice.map(|cells| cells as usize),
+            bounces: bounces as u32,
+            filter: table.choose("filter", &FILTERS)?.flatten(),
             photons_only,
         })
     }
 }
 
 /// `None` stands for the plan's own choice.
-const GATHERS: [(&str, Option<Gather>); 3] =
-    [("auto", None), ("knn", Some(Gather::Knn)), ("lattice", Some(Gather::Lattice))];
+const FILTERS: [(&str, Option<bool>); 3] =
+    [("auto", None), ("on", Some(true)), ("off", Some(false))];
+
+/// `None` stands for the plan's own choice.
+const GATHERS: [(&str, Option<Gather>); 4] = [
+    ("auto", None),
+    ("knn", Some(Gather::Knn)),
+    ("lattice", Some(Gather::Lattice)),
+    ("bounce", Some(Gather::Bounce)),
+];
 
 fn read_count(table: &Table, key: &str, default: u64) -> Result<usize, Problem> {
     let count = table.get_or(key, default)?;
