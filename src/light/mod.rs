@@ -6,10 +6,12 @@
 mod area;
 mod environment;
 mod punctual;
+mod shadows;
 
 pub use area::{QuadLight, SphereLight};
 pub use environment::{DirectionSample, Environment, EnvironmentImage};
 pub use punctual::{DirectionalLight, PointLight, SpotLight};
+pub use shadows::{Shadows, transmittance_to};
 
 use crate::math::{DVec2, DVec3, Ray, Rgb, Span};
 

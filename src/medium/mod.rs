@@ -127,6 +127,11 @@ pub trait Extinction: Sync {
     /// Whether it differs between channels: then photons change colour as they fly.
     const IS_CHROMATIC: bool = false;
 
+    /// The shortest edge of a grid's voxels \[m\]; `None` of media without.
+    fn voxel_size(&self) -> Option<f64> {
+        None
+    }
+
     /// sigma_t at a point \[1/m\]; 0 outside a grid's bounds. A uniform extinction does not look at the point.
     fn sigma_t(&self, position: DVec3) -> Rgb;
 

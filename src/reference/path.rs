@@ -4,14 +4,15 @@
 //! function, and so on until it leaves the medium or roulette ends it, which looks at the throughput alone. Each segment and each collision adds what the
 //! lights send there:
 //!
-//! * lights seen along the segment, weighed against having been sampled from its start;
+//! * lights seen along the segment, weighed against having been sampled from its start; a sky that is the same all around is not sampled,
+//!   but found by the paths that leave;
 //! * one place for each near light by equi-angular sampling, lit by that light;
 //! * the collision, lit by every light;
 //! * from the collision one ray aimed at each point light in the medium, with one place on it (see [`aim`](super::aim)).
 //!
 //! All weights are balance heuristics over these ways (see [`segment`](super::segment)): no light makes an infinite variance.
 
-use crate::light::Light;
+use crate::light::{Environment, Illumination, Light, Shadows};
 use crate::math::{DVec3, Random, Ray, Rgb, Span, max_channel, uniform};
 use crate::medium::{Extinction, Flight, Medium};
 use crate::scene::Scene;
@@ -65,10 +66,20 @@ struct Flown {
     near: Rgb,
     /// Light of the medium itself.
     glow: Rgb,
-    collision: Option<Collision>,
+    end: End,
 }
 
-/// Where a flight ends.
+/// How a flight ends.
+enum End {
+    Collision(Collision),
+    Escape {
+        /// Factor on the throughput.
+        weight: Rgb,
+    },
+    Absorbed,
+}
+
+/// Where it collides.
 struct Collision {
     place: DVec3,
     /// After it.
@@ -82,8 +93,12 @@ pub(crate) struct PathTracer<'a, E> {
     medium: &'a Medium,
     extinction: &'a E,
     lights: &'a [Light],
+    shadows: Option<&'a Shadows>,
+    /// Radiance that is the same all around: found by the paths that leave, and not sampled.
+    even_sky: Rgb,
+    /// Whether there is an environment that is not even.
     has_environment: bool,
-    /// Whether a ray may meet a light.
+    /// Whether a ray may meet a light that is sampled.
     has_extended: bool,
     /// For each light, sampling of distances on the current segment.
     towards: Vec<Option<EquiAngular>>,
@@ -98,11 +113,19 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             medium: &scene.medium,
             extinction,
             lights,
-            has_environment: lights.iter().any(|light| matches!(light, Light::Environment(_))),
+            shadows: None,
+            even_sky: lights.iter().filter_map(even_sky).sum(),
+            has_environment: lights.iter().any(is_image),
             has_extended: lights.iter().any(is_extended),
             towards: vec![None; lights.len()],
             ways: vec![1.0; lights.len()],
         }
+    }
+
+    /// The same with what is known of shadows.
+    pub(crate) fn with_shadows(mut self, shadows: &'a Shadows) -> Self {
+        self.shadows = Some(shadows);
+        self
     }
 
     /// An estimate of the light that travels back along a ray.
@@ -117,13 +140,24 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 seen.transmittance = whole;
             }
             seen.add(order, throughput * self.lights_along(&ray, phase_density, whole, random));
-            let Some(span) = span else { break };
+            let sky = if order > 0 { throughput * self.even_sky } else { Rgb::ZERO };
+            let Some(span) = span else {
+                seen.add(order, sky);
+                break;
+            };
             let (medium, extinction) = (self.medium, self.extinction);
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
             let found = self.fly(&segment, random);
             seen.add(order + 1, throughput * found.near);
             seen.add_glow(order, throughput * found.glow);
-            let Some(collision) = found.collision else { break };
+            let collision = match found.end {
+                End::Collision(collision) => collision,
+                End::Escape { weight } => {
+                    seen.add(order, sky * weight);
+                    break;
+                }
+                End::Absorbed => break,
+            };
 
             throughput = collision.throughput;
             seen.add(order + 1, throughput * collision.light);
@@ -172,11 +206,30 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 };
                 sum += throughput * self.lights_along(&ray, phase_density, whole, random);
             }
-            let Some(span) = span.filter(|_| bounce < bounces) else { break };
+            // What the first ray meets is scattered but once.
+            let sky = if bounce > 0 { throughput * self.even_sky } else { Rgb::ZERO };
+            let Some(span) = span else {
+                sum += sky;
+                break;
+            };
+            if bounce == bounces {
+                if sky != Rgb::ZERO {
+                    let flight = extinction.sample_flight(&ray, span, throughput, random);
+                    sum += sky * escape_weight(flight);
+                }
+                break;
+            }
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
             let found = self.fly(&segment, random);
             sum += throughput * (found.near + found.glow);
-            let Some(collision) = found.collision else { break };
+            let collision = match found.end {
+                End::Collision(collision) => collision,
+                End::Escape { weight } => {
+                    sum += sky * weight;
+                    break;
+                }
+                End::Absorbed => break,
+            };
             throughput = collision.throughput;
             sum += throughput * collision.light;
             match roulette(throughput, random) {
@@ -193,21 +246,26 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let near = self.near_lights(segment, random);
         let Segment { ray, span, throughput, .. } = segment;
         let flight = self.extinction.sample_flight(ray, *span, *throughput, random);
-        let (distance, weight) = match flight {
-            Flight::Escape { .. } => (span.end, None),
-            Flight::Collision { distance, weight } => (distance, Some(weight)),
+        let distance = match flight {
+            Flight::Escape { .. } => span.end,
+            Flight::Collision { distance, .. } => distance,
         };
         let glow = glow(segment, distance, random);
-        let collision = weight.and_then(|weight| {
-            let place = ray.at(distance);
-            let throughput = *throughput * weight * self.medium.albedo_at(place);
-            let scatters = throughput != Rgb::ZERO;
-            scatters.then(|| {
-                let light = self.lights_at(segment, distance, random);
-                Collision { place, throughput, light }
-            })
-        });
-        Flown { near, glow, collision }
+        let end = match flight {
+            Flight::Escape { weight } => End::Escape { weight },
+            Flight::Collision { weight, .. } => {
+                let place = ray.at(distance);
+                let throughput = *throughput * weight * self.medium.albedo_at(place);
+                match throughput {
+                    Rgb::ZERO => End::Absorbed,
+                    _ => {
+                        let light = self.lights_at(segment, distance, random);
+                        End::Collision(Collision { place, throughput, light })
+                    }
+                }
+            }
+        };
+        Flown { near, glow, end }
     }
 
     /// Transmittance of a whole ray, of which `span` is in the medium.
@@ -226,7 +284,9 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let mut sum = Rgb::ZERO;
         for (light, ways) in self.lights.iter().zip(&self.ways) {
             let Some((distance, radiance)) = light.seen_along(ray) else { continue };
-            if radiance == Rgb::ZERO {
+            // An even sky is the camera's to see; scattered, paths find it where they leave.
+            let is_found = phase_density.is_some() && even_sky(light).is_some();
+            if radiance == Rgb::ZERO || is_found {
                 continue;
             }
             let weight = phase_density.map_or(1.0, |phase| {
@@ -249,7 +309,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         for (index, light) in self.lights.iter().enumerate() {
             let towards = segment.equi_angular(light);
             if let Some(towards) = &towards {
-                sum += self.near_light(segment, light, towards, random);
+                sum += self.near_light(segment, (index, light), towards, random);
             }
             self.towards[index] = towards;
         }
@@ -259,7 +319,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     fn near_light(
         &self,
         segment: &Segment<E>,
-        light: &Light,
+        (index, light): (usize, &Light),
         towards: &EquiAngular,
         random: &mut Random,
     ) -> Rgb {
@@ -273,7 +333,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let flight = segment.flight_density(distance, sigma_t);
         let density = segment.density(light, Some(towards), distance, flight);
         let scattered =
-            self.light_at(light, place, segment.ray.direction, [flight, density], random);
+            self.light_at((index, light), place, segment.ray.direction, [flight, density], random);
         if scattered == Rgb::ZERO {
             return Rgb::ZERO;
         }
@@ -287,6 +347,9 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let flight = segment.flight_density(distance, self.extinction.sigma_t(place));
         let mut sum = Rgb::ZERO;
         for (index, light) in self.lights.iter().enumerate() {
+            if even_sky(light).is_some() {
+                continue;
+            }
             let ways = match &self.towards[index] {
                 Some(towards) if flight > 0.0 => {
                     segment.density(light, Some(towards), distance, flight) / flight
@@ -294,7 +357,8 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 _ => 1.0,
             };
             self.ways[index] = ways;
-            sum += self.light_at(light, place, segment.ray.direction, [1.0, ways], random);
+            let from = (index, light);
+            sum += self.light_at(from, place, segment.ray.direction, [1.0, ways], random);
         }
         sum
     }
@@ -309,7 +373,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
         let (medium, extinction) = (self.medium, self.extinction);
-        for light in self.lights {
+        for (index, light) in self.lights.iter().enumerate() {
             let aim = peak_of(light, medium).and_then(|peak| Aim::new(place, peak));
             let Some(aim) = aim else { continue };
             let ray = Ray::new(place, aim.sample_direction(random));
@@ -317,7 +381,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             let phase_density = Some(medium.phase.density(ray.direction.dot(direction)));
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
             if let Some(towards) = segment.equi_angular(light) {
-                sum += self.near_light(&segment, light, &towards, random);
+                sum += self.near_light(&segment, (index, light), &towards, random);
             }
         }
         sum
@@ -327,7 +391,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     /// that of all ways that find the place, of which `flight` may go on to meet the light by itself.
     fn light_at(
         &self,
-        light: &Light,
+        (index, light): (usize, &Light),
         place: DVec3,
         direction: DVec3,
         [flight, density]: [f64; 2],
@@ -341,7 +405,9 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         if weighted == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        weighted * self.transmittance(place, sample.from.direction, sample.from.distance, random)
+        let known = self.shadows.and_then(|shadows| shadows.transmittance(index, place));
+        let Illumination { direction, distance, .. } = sample.from;
+        weighted * known.unwrap_or_else(|| self.transmittance(place, direction, distance, random))
     }
 
     fn transmittance(
@@ -358,9 +424,29 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     }
 }
 
-/// Whether a ray may meet the light.
+/// The radiance of an environment that is the same all around.
+fn even_sky(light: &Light) -> Option<Rgb> {
+    match light {
+        Light::Environment(Environment::Constant(radiance)) => Some(*radiance),
+        _ => None,
+    }
+}
+
+fn is_image(light: &Light) -> bool {
+    matches!(light, Light::Environment(Environment::Image(_)))
+}
+
+/// Whether a ray may meet the light, which is sampled besides.
 fn is_extended(light: &Light) -> bool {
-    matches!(light, Light::Environment(_) | Light::Quad(_) | Light::Sphere(_))
+    is_image(light) || matches!(light, Light::Quad(_) | Light::Sphere(_))
+}
+
+/// Factor on the throughput of a path that leaves; 0 if it does not.
+fn escape_weight(flight: Flight) -> Rgb {
+    match flight {
+        Flight::Escape { weight } => weight,
+        Flight::Collision { .. } => Rgb::ZERO,
+    }
 }
 
 /// The throughput of a survivor.

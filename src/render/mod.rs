@@ -20,7 +20,6 @@ mod reader;
 mod regression;
 mod report;
 mod scattered_light;
-mod shadow;
 mod single_scatter;
 
 pub use calibration::Calibration;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::emission::Emission;
 use crate::film::Film;
+use crate::light::Shadows;
 use crate::math::Stream;
 use crate::medium::Extinction;
 use crate::reference::PathTracer;
@@ -37,6 +38,9 @@ const BIAS_NOISE: f64 = 0.1;
 /// The fewest photons of an estimate that k shrinks to: below, its noise is that of outliers.
 const FEWEST_OF_K: usize = 8;
 
+/// Columns of shadows a pixel: beyond, its rays look fewer times towards the light than columns are made.
+const COLUMNS_A_PIXEL: usize = 4;
+
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
 
@@ -54,6 +58,8 @@ pub struct Passes<'a, E> {
     observer: &'a dyn Observer,
     started: Instant,
     strategy: Strategy<'a>,
+    /// Made by the first pass that wants them.
+    shadows: Option<Shadows>,
     samples_per_pixel: usize,
     /// Points a ray, of single and of multiple scattering.
     most_samples: [usize; 2],
@@ -113,6 +119,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             observer,
             started: Instant::now(),
             strategy,
+            shadows: None,
             samples_per_pixel,
             most_samples: match (is_limited, scene.render.gather) {
                 (true, Gather::Bounce) => [POINTS_A_RAY, PATHS_A_RAY],
@@ -219,22 +226,29 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     *observer,
                     report,
                 )?;
+                let shadows: &Shadows = self.shadows.get_or_insert_with(|| {
+                    let most = COLUMNS_A_PIXEL * scene.camera.width * scene.camera.height;
+                    Shadows::of(&scene.lights, &scene.medium, *extinction, most)
+                });
                 let (most_samples, phase) = (self.most_samples, scene.medium.phase);
                 let lattice = || LatticeReader { lattice, phase };
                 match *bounces {
                     None => {
                         let reader = || {
                             Reader::new(scene, *extinction, lattice())
+                                .with_shadows(shadows)
                                 .with_most_samples(most_samples)
                         };
                         gather(&film_pass, reader, *observer, report)
                     }
                     Some(bounces) => {
                         let reader = || {
-                            let paths = PathTracer::new(scene, *extinction);
+                            let paths = PathTracer::new(scene, *extinction).with_shadows(shadows);
                             let lattice = lattice();
                             let bounced = BouncedReader { lattice, paths, bounces, seed };
-                            Reader::new(scene, *extinction, bounced).with_most_samples(most_samples)
+                            Reader::new(scene, *extinction, bounced)
+                                .with_shadows(shadows)
+                                .with_most_samples(most_samples)
                         };
                         gather(&film_pass, reader, *observer, report)
                     }

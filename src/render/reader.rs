@@ -1,13 +1,13 @@
 //! Reading a lit medium along rays.
 
 use crate::estimate::{Estimator, InScattered};
+use crate::light::{Shadows, transmittance_to};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::scattered_light::ScatteredLight;
-use crate::render::shadow::transmittance_to;
 use crate::render::single_scatter::ScatteringRay;
 use crate::scene::Scene;
 
@@ -40,6 +40,7 @@ pub struct Reader<'a, E, S> {
     scene: &'a Scene,
     extinction: &'a E,
     scattered_light: S,
+    shadows: Option<&'a Shadows>,
     most_samples: [usize; 2],
     profile: RayProfile,
     queries: Vec<PhotonQuery>,
@@ -56,7 +57,22 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     /// A reader, to which `scattered_light` says what is scattered more than once.
     pub fn new(scene: &'a Scene, extinction: &'a E, scattered_light: S) -> Self {
         let (profile, queries) = (RayProfile::default(), Vec::new());
-        Self { scene, extinction, scattered_light, most_samples: [usize::MAX; 2], profile, queries }
+        let shadows = None;
+        Self {
+            scene,
+            extinction,
+            scattered_light,
+            shadows,
+            most_samples: [usize::MAX; 2],
+            profile,
+            queries,
+        }
+    }
+
+    /// The same with what is known of shadows.
+    pub fn with_shadows(mut self, shadows: &'a Shadows) -> Self {
+        self.shadows = Some(shadows);
+        self
     }
 
     /// The same with no more than so many points a ray, of single and of multiple scattering, where many rays share a pixel.
@@ -141,7 +157,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         let Some(span) = self.scene.medium.bounds.intersect(ray) else { return Rgb::ZERO };
         self.extinction.profile(ray, span, &mut self.profile);
         self.scattering_ray(ray, span).single_scatter(
-            &self.scene.lights[light],
+            (light, &self.scene.lights[light]),
             samples,
             phase,
             random,
@@ -150,7 +166,14 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
 
     fn scattering_ray<'r>(&'r self, ray: &'r Ray, span: Span) -> ScatteringRay<'r, E> {
         let (medium, profile) = (&self.scene.medium, &self.profile);
-        ScatteringRay { medium, extinction: self.extinction, ray, span, profile }
+        ScatteringRay {
+            medium,
+            extinction: self.extinction,
+            shadows: self.shadows,
+            ray,
+            span,
+            profile,
+        }
     }
 
     fn single_scatter(
@@ -164,7 +187,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         let scattering = self.scattering_ray(ray, span);
         let samples = self.scene.render.light_samples.min(self.most_samples[0]);
         let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
-        lights.map(|(_, light)| scattering.single_scatter(light, samples, phase, random)).sum()
+        lights.map(|light| scattering.single_scatter(light, samples, phase, random)).sum()
     }
 
     /// Lights seen along the ray.

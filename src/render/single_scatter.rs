@@ -5,11 +5,10 @@
 //! by the balance heuristic (Veach and Guibas 1995): the inverse-square peak is sampled away, and optically thick
 //! media are not left to it.
 
-use crate::light::{Environment, Light};
+use crate::light::{Environment, Illumination, Light, Shadows, transmittance_to};
 use crate::math::{DVec2, DVec3, Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, Medium, RayProfile};
 use crate::render::distances::{ByTransmittance, EquiAngular};
-use crate::render::shadow::transmittance_to;
 
 /// Opacity up to which a uniform medium's transmittance counts as smooth: an optical depth of 4.
 const SMOOTH_OPACITY: f64 = 0.98;
@@ -20,6 +19,8 @@ pub struct ScatteringRay<'a, E> {
     pub medium: &'a Medium,
     /// Its extinction.
     pub extinction: &'a E,
+    /// What is known of shadows in it.
+    pub shadows: Option<&'a Shadows>,
     /// The ray.
     pub ray: &'a Ray,
     /// Its part inside the medium.
@@ -29,10 +30,10 @@ pub struct ScatteringRay<'a, E> {
 }
 
 impl<E: Extinction> ScatteringRay<'_, E> {
-    /// Radiance of one light, scattered once, from `samples` distances: one in each stratum, at `phase` of it.
+    /// Radiance of one light, the scene's number `index`, scattered once, from `samples` distances: one in each stratum, at `phase` of it.
     pub fn single_scatter(
         &self,
-        light: &Light,
+        (index, light): (usize, &Light),
         samples: usize,
         phase: f64,
         random: &mut Random,
@@ -44,7 +45,14 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         match (light, light.center()) {
             (_, Some(center)) => {
                 let equi_angular = EquiAngular::new(self.ray, span, center);
-                self.by_both(light, &equi_angular, &by_transmittance, samples, phase, random)
+                self.by_both(
+                    (index, light),
+                    &equi_angular,
+                    &by_transmittance,
+                    samples,
+                    phase,
+                    random,
+                )
             }
             (Light::Environment(environment), _) => {
                 self.strata(&by_transmittance, samples, phase, random, |place, random| {
@@ -52,7 +60,7 @@ impl<E: Extinction> ScatteringRay<'_, E> {
                 })
             }
             _ => self.strata(&by_transmittance, samples, phase, random, |place, random| {
-                self.light_towards_camera(light, place, random)
+                self.light_towards_camera((index, light), place, random)
             }),
         }
     }
@@ -82,7 +90,7 @@ impl<E: Extinction> ScatteringRay<'_, E> {
     /// Distances by both densities.
     fn by_both(
         &self,
-        light: &Light,
+        light: (usize, &Light),
         equi_angular: &EquiAngular,
         by_transmittance: &ByTransmittance,
         samples: usize,
@@ -117,7 +125,12 @@ impl<E: Extinction> ScatteringRay<'_, E> {
     }
 
     /// Phase-weighted light from one sampled direction of a light, attenuated on its way.
-    fn light_towards_camera(&self, light: &Light, place: DVec3, random: &mut Random) -> Rgb {
+    fn light_towards_camera(
+        &self,
+        (index, light): (usize, &Light),
+        place: DVec3,
+        random: &mut Random,
+    ) -> Rgb {
         let u = match light {
             Light::Quad(_) | Light::Sphere(_) => DVec2::new(uniform(random), uniform(random)),
             _ => DVec2::ZERO,
@@ -125,13 +138,11 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let Some(sample) = light.sample_illumination(place, u) else { return Rgb::ZERO };
         // Travel: from the light (-direction) to the camera (-ray.direction).
         let phase = self.medium.phase.density(sample.direction.dot(self.ray.direction));
-        let arriving = transmittance_to(
-            self.medium,
-            self.extinction,
-            place,
-            sample.direction,
-            sample.distance,
-        );
+        let known = self.shadows.and_then(|shadows| shadows.transmittance(index, place));
+        let arriving = known.unwrap_or_else(|| {
+            let Illumination { direction, distance, .. } = sample;
+            transmittance_to(self.medium, self.extinction, place, direction, distance)
+        });
         sample.irradiance * arriving * phase
     }
 

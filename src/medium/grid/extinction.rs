@@ -117,6 +117,12 @@ impl Placement {
 impl Extinction for GridExtinction {
     const IS_UNIFORM: bool = false;
 
+    fn voxel_size(&self) -> Option<f64> {
+        let edges = self.placement.as_ref()?.world_to_local.inverse();
+        let edges = [edges.x_axis, edges.y_axis, edges.z_axis];
+        Some(edges.map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min))
+    }
+
     fn sigma_t(&self, position: DVec3) -> Rgb {
         match &self.placement {
             Some(placement) => {
