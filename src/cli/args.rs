@@ -6,8 +6,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExtraLayers;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::RenderOptions;
-use photonvdb::scene::Overrides;
+use photonvdb::render::{Gather, RenderOptions};
+use photonvdb::scene::{Overrides, Scene};
 
 use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
@@ -123,7 +123,8 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub photons: Option<u64>,
 
-    /// Independent passes; the image is their mean [default: 1, or as many as the limits below allow]
+    /// Independent passes; the image is their mean [default: 1, 4 with --gather bounce, or as
+    /// many as the limits below allow]
     #[arg(long, value_name = "P", value_parser = parse_passes)]
     pub passes: Option<u32>,
 
@@ -162,7 +163,7 @@ pub struct RenderArguments {
     pub bounces: Option<u64>,
 
     /// Whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias;
-    /// auto smooths with --target-error or --time-budget [default: render.filter of the scene]
+    /// auto smooths with --target-error, --time-budget or --gather bounce [default: render.filter of the scene]
     #[arg(long, value_name = "F", value_parser = PossibleValuesParser::new(["auto", "on", "off"]))]
     pub filter: Option<String>,
 
@@ -348,9 +349,14 @@ impl RenderArguments {
     }
 
     /// When the render ends.
-    pub fn options(&self) -> RenderOptions {
+    pub fn options(&self, scene: &Scene) -> RenderOptions {
         let limited = self.target_error.is_some() || self.time_budget.is_some();
-        let passes = self.passes.unwrap_or(if limited { u32::MAX } else { 1 });
+        let passes = self.passes.unwrap_or(match scene.render.gather {
+            _ if limited => u32::MAX,
+            // What the filter goes by is how passes differ.
+            Gather::Bounce => 4,
+            _ => 1,
+        });
         RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget }
     }
 

@@ -28,7 +28,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     check_outputs(arguments)?;
     let scene = load_scene(arguments)?;
     let reference = load_reference(arguments, &scene)?;
-    let options = arguments.options();
+    let options = arguments.options(&scene);
     let plan = Plan { photons: photons_per_pass(&scene, &options), ..Plan::of(&scene) };
     let interrupted = interrupt::catch()?;
     summary.plan(&scene, &plan);

@@ -17,8 +17,9 @@ const MAX_NODES: usize = 1 << 26;
 /// Places in the medium where columns are held against exact walks.
 const PROBES: usize = 512;
 
-/// The largest error of columns: root mean square over that of the transmittance, both weighted by sigma_t.
-const MAX_ERROR: f64 = 0.01;
+/// The largest error of columns at a place: root mean square over that of the transmittance, both weighted by sigma_t. Along a ray
+/// errors of either sign add up to a fraction of it.
+const MAX_ERROR: f64 = 0.03;
 
 /// Shadows of a scene's lights.
 #[derive(Debug)]

@@ -21,10 +21,13 @@ use crate::render::{
 use crate::scene::Scene;
 
 /// Photons a pixel and pass, where the image is made to a limit: what makes noise of photons and of rays about equal.
-const PHOTONS_A_PIXEL: u64 = 2;
+const PHOTONS_A_PIXEL: f64 = 2.0;
+
+/// The same where paths end in what the photons leave, which says little of the noise.
+const PHOTONS_A_PIXEL_OF_PATHS: f64 = 0.25;
 
 /// The fewest and the most photons of such a pass.
-const PHOTONS_A_PASS: [u64; 2] = [1 << 14, 1 << 20];
+const PHOTONS_A_PASS: [u64; 2] = [1 << 12, 1 << 20];
 
 /// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
 const POINTS_A_RAY: usize = 4;
@@ -44,8 +47,11 @@ const COLUMNS_A_PIXEL: usize = 4;
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
 
-/// Factor on the passes after which the error is measured again: that of the filter takes time.
-const MEASURE_STEP: f64 = 1.1;
+/// Radius of the filter that is tried first \[pixels\].
+const FIRST_RADIUS: usize = 2;
+
+/// Share of the passes done after which the error is measured again at the latest: that of the filter takes time.
+const MOST_TO_MEASURE: f64 = 0.3;
 
 /// The share of the error asked for that may be bias.
 const BIAS_SHARE: f64 = 0.6;
@@ -143,7 +149,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             let is_last = cancelled || self.is_out_of_passes();
             if done >= self.next_measure || is_last {
                 self.measure();
-                self.next_measure = (f64::from(done) * MEASURE_STEP).ceil() as u32;
+                self.next_measure = done + self.passes_to_measure();
             }
             self.observer.pass_finished(done, self.report.error);
             if is_last || self.is_on_target() {
@@ -162,15 +168,32 @@ impl<'a, E: Extinction> Passes<'a, E> {
         }
         let Some(halves) = self.probes.halves() else { return };
         let unfiltered = ErrorEstimate { bias: 0.0, ..error };
-        let filtered = halves.filtered(unfiltered, self.probes.mean());
+        let radius = self.filtered.as_ref().map_or(FIRST_RADIUS, |filtered| filtered.radius);
+        let filtered = halves.filtered(unfiltered, radius, self.probes.mean());
         let ErrorEstimate { noise, bias } = filtered.error;
         self.report.error = Some(ErrorEstimate { noise, bias: bias.hypot(error.bias) });
         self.filtered = Some(filtered);
     }
 
+    /// Passes until the error is worth measuring again: those that bring its noise down to what is asked for, were nothing else to change, but
+    /// not many more than there are.
+    fn passes_to_measure(&self) -> u32 {
+        let done = f64::from(self.report.passes_done);
+        let enough = |target: f64| {
+            let ErrorEstimate { noise, bias } = self.report.error?;
+            let noise_left = (target * target - bias * bias).max(0.0);
+            Some(done * noise * noise / noise_left)
+        };
+        let all = self.options.target_error.and_then(enough).unwrap_or(f64::INFINITY);
+        let most = (MOST_TO_MEASURE * done).ceil();
+        (0.9 * all - done).clamp(1.0, most.max(1.0)) as u32
+    }
+
     /// Whether the filter is asked for, and has something to go by.
     fn filters(&self) -> bool {
-        let asked = self.scene.render.filter.unwrap_or(self.options.has_limit());
+        let render = &self.scene.render;
+        let is_noisy = self.options.has_limit() || render.gather == Gather::Bounce;
+        let asked = render.filter.unwrap_or(is_noisy);
         asked && !self.scene.render.photons_only && self.probes.mean() > 0.0
     }
 
@@ -301,14 +324,22 @@ impl<'a, E: Extinction> Passes<'a, E> {
     }
 }
 
-/// Photons that a pass emits: those of the scene, or, where a limit ends the render and the scene leaves it open, what
+/// Photons that a pass emits: those of the scene, or, where it leaves that open and either a limit ends the render or paths are bounced, what
 /// suits the size of the image.
 pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
-    let is_open = options.has_limit() && !scene.is_photon_count_given;
-    if is_open && scene.render.gather != Gather::Knn {
+    let is_small = match scene.render.gather {
+        Gather::Knn => false,
+        Gather::Lattice => options.has_limit(),
+        Gather::Bounce => true,
+    };
+    if is_small && !scene.is_photon_count_given {
         let [fewest, most] = PHOTONS_A_PASS;
-        let pixels = (scene.camera.width * scene.camera.height) as u64;
-        return (PHOTONS_A_PIXEL * pixels).clamp(fewest, most);
+        let pixels = (scene.camera.width * scene.camera.height) as f64;
+        let photons = match scene.render.gather {
+            Gather::Bounce => PHOTONS_A_PIXEL_OF_PATHS * pixels,
+            _ => PHOTONS_A_PIXEL * pixels,
+        };
+        return (photons as u64).clamp(fewest, most);
     }
     scene.photons.count
 }

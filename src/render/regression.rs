@@ -16,7 +16,7 @@ use crate::math::{Rgb, mean_channel};
 use crate::render::error_estimate::ErrorEstimate;
 
 /// Radii tried \[pixels\]; 0 is no filter.
-const RADII: [usize; 6] = [1, 2, 3, 4, 6, 8];
+const RADII: [usize; 7] = [0, 1, 2, 3, 4, 6, 8];
 
 /// Share of a feature's variance by which its slope is damped.
 const DAMPING: f64 = 1e-3;
@@ -47,16 +47,17 @@ pub struct Filtered {
 }
 
 impl Halves<'_> {
-    /// The image filtered with the radius of least error; `unfiltered` is that of none.
-    pub fn filtered(&self, unfiltered: ErrorEstimate, mean: f64) -> Filtered {
-        let mut best = Filtered { radius: 0, error: unfiltered, multiple: Vec::new() };
-        for radius in RADII {
-            let tried = self.with_radius(radius, mean);
-            // Beyond the best radius the bias goes on rising.
-            if tried.error.total() >= best.error.total() {
-                break;
-            }
-            best = tried;
+    /// The image filtered with the radius of least error, looked for from `first` on; `unfiltered` is the error without.
+    pub fn filtered(&self, unfiltered: ErrorEstimate, first: usize, mean: f64) -> Filtered {
+        let none = || Filtered { radius: 0, error: unfiltered, multiple: Vec::new() };
+        let tried = |index: usize| match RADII[index] {
+            0 => none(),
+            radius => self.with_radius(radius, mean),
+        };
+        let first = RADII.iter().position(|radius| *radius == first).unwrap_or(0);
+        let mut best = tried(first);
+        if !improve(&mut best, (first + 1..RADII.len()).map(tried)) {
+            improve(&mut best, (0..first).rev().map(tried));
         }
         best
     }
@@ -122,6 +123,18 @@ impl Halves<'_> {
             bias: ((sum + spread).max(0.0) / count).sqrt() / mean,
         }
     }
+}
+
+/// Takes the next image as long as its error is less; whether any was.
+fn improve(best: &mut Filtered, others: impl Iterator<Item = Filtered>) -> bool {
+    let mut improved = false;
+    for other in others {
+        if other.error.total() >= best.error.total() {
+            break;
+        }
+        (*best, improved) = (other, true);
+    }
+    improved
 }
 
 /// Features of a pixel, and multiple scattering of both halves.
@@ -353,7 +366,7 @@ mod tests {
             let noisy = [film(&mut random, noise, 0.3), film(&mut random, noise, 0.3)];
             let halves = Halves { films: [&noisy[0], &noisy[1]], counts: [2, 2] };
             let raw = noise * (2.0f64 / 3.0).sqrt() / 2f64.sqrt();
-            let chosen = halves.filtered(ErrorEstimate { noise: raw, bias: 0.0 }, 1.0);
+            let chosen = halves.filtered(ErrorEstimate { noise: raw, bias: 0.0 }, 2, 1.0);
             assert!(chosen.radius <= largest, "{noise}: {}", chosen.radius);
             if chosen.radius > 0 {
                 let error = true_error(&chosen);

@@ -167,8 +167,11 @@ impl<E: Extinction> ScatteringRay<'_, E> {
             Environment::Constant(_) => density,
             Environment::Image(_) => 0.5 * (density + environment.pdf_direction(towards)),
         };
-        let arriving =
-            transmittance_to(self.medium, self.extinction, place, towards, f64::INFINITY);
+        // The direction is random already: an estimate costs a fraction of the exact walk.
+        let out = Ray::new(place, towards);
+        let inside = self.medium.bounds.intersect(&out);
+        let arriving = inside
+            .map_or(Rgb::ONE, |span| self.extinction.estimate_transmittance(&out, span, random));
         environment.radiance(towards) * arriving * (density / pdf)
     }
 }

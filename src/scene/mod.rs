@@ -39,8 +39,13 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::math::Rgb;
 use crate::medium::{Medium, MediumExtinction};
+use crate::render::Gather;
 use error::Problem;
+use expected_collisions::expected_collisions;
 use volume::VolumeRules;
+
+/// Expected collisions of a photon from which paths are bounced.
+const MANY_COLLISIONS: f64 = 8.0;
 
 /// A validated scene. Nothing in it can be out of range.
 #[derive(Debug)]
@@ -109,7 +114,7 @@ impl Scene {
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
             .collect::<Result<_, _>>()?;
-        Ok(Self {
+        let mut scene = Self {
             camera: file.camera.camera()?,
             medium,
             lights,
@@ -120,6 +125,11 @@ impl Scene {
             grids,
             is_photon_count_given: true,
             warnings,
-        })
+        };
+        // Where light is scattered many times it falls off within a mean free path of the medium's faces, less than a cell.
+        if scene.render.is_gather_open && expected_collisions(&scene) >= MANY_COLLISIONS {
+            scene.render.gather = Gather::Bounce;
+        }
+        Ok(scene)
     }
 }

@@ -13,10 +13,10 @@ use crate::scene::error::Problem;
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
-/// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, else `"lattice"` |
+/// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, `"bounce"` in media where light scatters many times, else `"lattice"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
 /// | `bounces` | integer | | 8 | 1 to 1024 | collisions of a path before it ends in the lattice, where `gather` is `"bounce"` |
-/// | `filter` | `"auto"`, `"on"`, `"off"` | | `"auto"` | | whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias; `"auto"` is `"on"` where the image is made to a target error or a time |
+/// | `filter` | `"auto"`, `"on"`, `"off"` | | `"auto"` | | whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias; `"auto"` is `"on"` where the image is made to a target error or a time, and where paths are bounced |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -28,6 +28,9 @@ pub struct RenderSettings {
     pub light_samples: usize,
     /// How light scattered twice or more is gathered.
     pub gather: Gather,
+    /// Whether neither the file nor its keys say how: then the medium does.
+    #[serde(skip)]
+    pub is_gather_open: bool,
     /// Cells of the lattice along its longest side; `None`: by the number of photons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<usize>,
@@ -54,7 +57,8 @@ impl RenderSettings {
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
         let default = if photons_only || asks_for_k { Gather::Knn } else { Gather::Lattice };
-        let gather = table.choose("gather", &GATHERS)?.flatten().unwrap_or(default);
+        let asked = table.choose("gather", &GATHERS)?.flatten();
+        let gather = asked.unwrap_or(default);
         let needs_map = photons_only && gather != Gather::Knn;
         table.ensure("gather", !needs_map, "must be \"knn\" where photons_only is true")?;
         let lattice: Option<u64> = table.get("lattice")?;
@@ -67,6 +71,7 @@ impl RenderSettings {
             march_samples: read_count(table, "march_samples", 8)?,
             light_samples: read_count(table, "light_samples", 8)?,
             gather,
+            is_gather_open: asked.is_none() && gather == Gather::Lattice,
             lattice: lattice.map(|cells| cells as usize),
             bounces: bounces as u32,
             filter: table.choose("filter", &FILTERS)?.flatten(),
