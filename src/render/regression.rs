@@ -116,8 +116,8 @@ impl Halves<'_> {
         }
         let count = filtered.len().max(1) as f64;
         let sum: f64 = blocks.iter().sum();
-        // Of so many blocks the sum has that standard error: a bias that hides in it counts.
-        let spread = blocks.iter().map(|block| block * block).sum::<f64>().sqrt();
+        // Of so many blocks the sum has that standard error. Part of it counts: the radius of least error is chosen by this very sum.
+        let spread = 0.5 * blocks.iter().map(|block| block * block).sum::<f64>().sqrt();
         ErrorEstimate {
             noise: (noise * a * b / count).sqrt() / mean,
             bias: ((sum + spread).max(0.0) / count).sqrt() / mean,
