@@ -28,7 +28,7 @@ pub use grid::{ColorGrid, GridExtinction, ValueGrid};
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
 pub use moments::BallMoments;
 pub use overlap::BallIntegral;
-pub use phase::{ISOTROPIC, Phase};
+pub use phase::{ISOTROPIC, LARGEST_DROPLET, Lobe, Phase, SMALLEST_DROPLET};
 pub use profile::{ProfileKnot, RayProfile};
 
 use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp};

@@ -10,7 +10,7 @@ use super::file::emission_word;
 use super::grid_use::{GridRole, GridUse};
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
-use crate::medium::{MediumExtinction, Phase};
+use crate::medium::MediumExtinction;
 use crate::render::Gather;
 
 /// What a scene needs; printed before a render and part of its report.
@@ -20,6 +20,8 @@ pub struct Plan {
     pub medium: MediumKind,
     /// Whether scattered light goes all ways alike.
     pub isotropic: bool,
+    /// Mean cosine of the angle by which it is scattered.
+    pub mean_cosine: f64,
     /// Whether sigma_t or the albedo differs between the channels.
     pub chromatic: bool,
     /// The grids used, in the order in which they were read.
@@ -65,7 +67,8 @@ impl Plan {
         let expected_stored = (scene.photons.count as f64 * expected_collisions(scene)) as u64;
         Self {
             medium: if is_grid { MediumKind::Grid } else { MediumKind::Homogeneous },
-            isotropic: medium.phase == Phase::Isotropic,
+            isotropic: medium.phase.is_isotropic(),
+            mean_cosine: medium.phase.mean_cosine(),
             chromatic: matches!(medium.extinction, MediumExtinction::Chromatic(_))
                 || medium.albedo != Rgb::splat(medium.albedo.x)
                 || medium.color.is_some(),
@@ -94,7 +97,10 @@ impl fmt::Display for Plan {
             }
             MediumKind::Grid => ("density grid", "majorants, no emission"),
         };
-        let phase = if self.isotropic { "isotropic" } else { "anisotropic" };
+        let phase = match self.isotropic {
+            true => "isotropic".into(),
+            false => format!("anisotropic (mean cosine {:.2})", self.mean_cosine),
+        };
         let color = if self.chromatic { ", chromatic" } else { "" };
         let lights = self.lights.to_string();
         let lights = if lights.is_empty() { "no light but its own" } else { &lights };
