@@ -322,7 +322,9 @@ fn clone_of(medium: &Medium) -> Medium {
     let extinction = match &medium.extinction {
         MediumExtinction::Uniform(uniform) => MediumExtinction::Uniform(*uniform),
         MediumExtinction::Chromatic(chromatic) => MediumExtinction::Chromatic(*chromatic),
-        MediumExtinction::Grid(_) => return smoke(medium.albedo, 0.3),
+        MediumExtinction::Grid(_) | MediumExtinction::Several(_) => {
+            return smoke(medium.albedo, 0.3);
+        }
     };
     let (bounds, albedo, phase) = (medium.bounds, medium.albedo, medium.phase);
     Medium { bounds, extinction, albedo, color: None, phase, emissivity: None }

@@ -13,7 +13,7 @@
 
 use crate::light::Light;
 use crate::math::{DVec3, Random, Ray, Rgb, Span, max_channel, uniform};
-use crate::medium::{Extinction, Flight, Medium};
+use crate::medium::{Extinction, Flight, Medium, Phase};
 use crate::scene::Scene;
 
 use super::aim::Aim;
@@ -114,19 +114,24 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             let Some(weight) = weight else { break };
 
             let place = ray.at(distance);
-            throughput *= weight * medium.albedo_at(place);
+            let struck = extinction.struck(medium, place, random);
+            throughput *= weight * struck.albedo_at(place);
             if throughput == Rgb::ZERO {
                 break;
             }
-            seen.add(order + 1, throughput * self.lights_at(&segment, distance, random));
-            let aimed = self.aimed_light(place, ray.direction, throughput, random);
+            seen.add(
+                order + 1,
+                throughput * self.lights_at(&segment, distance, struck.phase, random),
+            );
+            let aimed =
+                self.aimed_light(&Ray::new(place, ray.direction), struck.phase, throughput, random);
             seen.add(order + 2, throughput * aimed);
             match roulette(throughput, random) {
                 Some(survivor) => throughput = survivor,
                 None => break,
             }
-            let direction = medium.phase.sample_direction(ray.direction, random);
-            phase_density = Some(medium.phase.density(direction.dot(ray.direction)));
+            let direction = struck.phase.sample_direction(ray.direction, random);
+            phase_density = Some(struck.phase.density(direction.dot(ray.direction)));
             ray = Ray::new(place, direction);
         }
         seen
@@ -183,14 +188,15 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let distance = towards.sample_distance(uniform(random));
         let place = segment.ray.at(distance);
         let sigma_t = self.extinction.sigma_t(place);
-        let sigma_s = sigma_t * self.medium.albedo_at(place);
+        let struck = self.extinction.struck(self.medium, place, random);
+        let sigma_s = sigma_t * struck.albedo_at(place);
         if sigma_s == Rgb::ZERO {
             return Rgb::ZERO;
         }
         let flight = segment.flight_density(distance, sigma_t);
         let density = segment.density(light, Some(towards), distance, flight);
-        let scattered =
-            self.light_at(light, place, segment.ray.direction, [flight, density], random);
+        let arriving = Ray::new(place, segment.ray.direction);
+        let scattered = self.light_at(light, &arriving, struck.phase, [flight, density], random);
         if scattered == Rgb::ZERO {
             return Rgb::ZERO;
         }
@@ -199,8 +205,15 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     }
 
     /// Light of all lights, scattered at the collision that ends a segment.
-    fn lights_at(&mut self, segment: &Segment<E>, distance: f64, random: &mut Random) -> Rgb {
+    fn lights_at(
+        &mut self,
+        segment: &Segment<E>,
+        distance: f64,
+        phase: Phase,
+        random: &mut Random,
+    ) -> Rgb {
         let place = segment.ray.at(distance);
+        let arriving = Ray::new(place, segment.ray.direction);
         let flight = segment.flight_density(distance, self.extinction.sigma_t(place));
         let mut sum = Rgb::ZERO;
         for (index, light) in self.lights.iter().enumerate() {
@@ -211,27 +224,27 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 _ => 1.0,
             };
             self.ways[index] = ways;
-            sum += self.light_at(light, place, segment.ray.direction, [1.0, ways], random);
+            sum += self.light_at(light, &arriving, phase, [1.0, ways], random);
         }
         sum
     }
 
-    /// Light of the point lights in the medium, scattered on rays aimed at them and then at `place`.
+    /// Light of the point lights in the medium, scattered on rays aimed at them and then where a ray arrives, its origin.
     fn aimed_light(
         &self,
-        place: DVec3,
-        direction: DVec3,
+        arriving: &Ray,
+        phase: Phase,
         throughput: Rgb,
         random: &mut Random,
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
         let (medium, extinction) = (self.medium, self.extinction);
         for light in self.lights {
-            let aim = peak_of(light, medium).and_then(|peak| Aim::new(place, peak));
+            let aim = peak_of(light, medium).and_then(|peak| Aim::new(arriving.origin, peak));
             let Some(aim) = aim else { continue };
-            let ray = Ray::new(place, aim.sample_direction(random));
+            let ray = Ray::new(arriving.origin, aim.sample_direction(random));
             let Some(span) = medium.bounds.intersect(&ray) else { continue };
-            let phase_density = Some(medium.phase.density(ray.direction.dot(direction)));
+            let phase_density = Some(phase.density(ray.direction.dot(arriving.direction)));
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
             if let Some(towards) = segment.equi_angular(light) {
                 sum += self.near_light(&segment, light, &towards, random);
@@ -240,25 +253,26 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         sum
     }
 
-    /// Phase-weighted light from one direction towards a light, attenuated, over the density of all ways that find it: `density` is
-    /// that of all ways that find the place, of which `flight` may go on to meet the light by itself.
+    /// Phase-weighted light from one direction towards a light, attenuated, where a ray arrives, its origin; over the density of all ways that
+    /// find it: `density` is that of all ways that find the place, of which `flight` may go on to meet the light by itself.
     fn light_at(
         &self,
         light: &Light,
-        place: DVec3,
-        direction: DVec3,
+        arriving: &Ray,
+        phase: Phase,
         [flight, density]: [f64; 2],
         random: &mut Random,
     ) -> Rgb {
-        let Some(sample) = sample_light(light, place, random) else { return Rgb::ZERO };
+        let Some(sample) = sample_light(light, arriving.origin, random) else { return Rgb::ZERO };
         // Against the light's travel, as the path goes: the phase function is the same both ways.
-        let phase = self.medium.phase.density(sample.from.direction.dot(direction));
+        let phase = phase.density(sample.from.direction.dot(arriving.direction));
         let met = sample.pdf.map_or(0.0, |pdf| flight * phase / pdf);
         let weighted = sample.from.irradiance * (phase / (density + met));
         if weighted == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        weighted * self.transmittance(place, sample.from.direction, sample.from.distance, random)
+        let Ray { origin, .. } = *arriving;
+        weighted * self.transmittance(origin, sample.from.direction, sample.from.distance, random)
     }
 
     fn transmittance(
