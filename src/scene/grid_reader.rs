@@ -50,7 +50,7 @@ impl GridReader<'_> {
         if color.max().max_element() <= 0.0 {
             self.warnings.push(format!("{shown} is black: the medium scatters no light"));
         }
-        let loaded = LoadedGrid::Color(color.clone());
+        let loaded = LoadedGrid::Color(Box::new(color.clone()));
         self.note(GridRole::Color, color.bytes(), key, loaded, sparse.index_to_world);
         Ok(color)
     }
@@ -85,7 +85,7 @@ impl GridReader<'_> {
                 self.problem(role, format!("{} cannot be used: {error}", self.shown(name)))
             })?;
         let grid = grid.ok_or_else(|| empty(self))?;
-        let loaded = LoadedGrid::Values(grid.clone());
+        let loaded = LoadedGrid::Values(Box::new(grid.clone()));
         self.note(role, grid.bytes(), key, loaded, sparse.index_to_world);
         Ok(grid)
     }

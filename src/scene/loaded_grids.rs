@@ -32,8 +32,8 @@ pub(super) enum GridForm {
 #[derive(Clone, Debug)]
 pub(super) enum LoadedGrid {
     Density(Arc<DensityGrid>),
-    Color(ColorGrid),
-    Values(ValueGrid),
+    Color(Box<ColorGrid>),
+    Values(Box<ValueGrid>),
 }
 
 /// All grids so far.
