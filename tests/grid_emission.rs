@@ -208,6 +208,24 @@ fn what_escapes_a_glowing_ball_is_known() {
 }
 
 #[test]
+fn every_watt_of_a_fire_in_fog_is_accounted_for() {
+    let path = tests().parent().unwrap().join("examples/scenes/fire.toml");
+    let mut scene = Scene::load(&path).unwrap();
+    scene.photons.count = 20_000;
+    let own = scene.medium.emissivity.as_ref().unwrap().cells().unwrap().power();
+    let bounds = scene.medium.bounds;
+    scene.medium =
+        Medium::of_volumes(vec![scene.medium, fog(bounds, Rgb::ONE, TINT, 0.2)]).unwrap();
+    scene.lights.clear();
+    let PowerBalance { emitted, absorbed, escaped, truncated, .. } = trace(&scene).balance;
+    // Flames of 1900 K have no blue.
+    let brightest = emitted.max_element();
+    let lost = (emitted - absorbed - escaped - truncated).abs() / brightest;
+    assert!(lost.max_element() < 1e-12, "{lost}");
+    assert!((emitted - own).abs().max_element() < 0.02 * brightest, "{emitted} {own}");
+}
+
+#[test]
 fn every_watt_of_light_and_heat_is_accounted_for() {
     for kind in KINDS {
         let mut scene = alone(smoke(TINT, 0.4), uneven(), 30_000);
@@ -322,7 +340,9 @@ fn clone_of(medium: &Medium) -> Medium {
     let extinction = match &medium.extinction {
         MediumExtinction::Uniform(uniform) => MediumExtinction::Uniform(*uniform),
         MediumExtinction::Chromatic(chromatic) => MediumExtinction::Chromatic(*chromatic),
-        MediumExtinction::Grid(_) => return smoke(medium.albedo, 0.3),
+        MediumExtinction::Grid(_) | MediumExtinction::Several(_) => {
+            return smoke(medium.albedo, 0.3);
+        }
     };
     let (bounds, albedo, phase) = (medium.bounds, medium.albedo, medium.phase);
     Medium { bounds, extinction, albedo, color: None, phase, emissivity: None }

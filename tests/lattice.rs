@@ -54,6 +54,16 @@ fn scenes() -> Vec<(&'static str, String)> {
             )),
         ),
         (
+            "smoke in fog",
+            smoke(&format!(
+                "density_scale = 8.0\nalbedo = 0.8\n{}\n{SUN}{SKY}",
+                fog(&format!("{boxed}\nsigma_t = 0.4\nalbedo = 0.95"))
+                    .replace(CAMERA, "")
+                    .replace("[medium]", "[[medium]]")
+            ))
+            .replace("\n[medium]", "\n[[medium]]"),
+        ),
+        (
             "smoke",
             smoke(&format!(
                 "density_scale = 8.0\nalbedo = 0.8\nphase = {{ kind = \"henyey-greenstein\", g = 0.3 }}\n{SUN}{SKY}"

@@ -14,6 +14,7 @@ use photonvdb::light::{
     SpotLight,
 };
 use photonvdb::math::{DVec3, Rgb};
+use photonvdb::medium::{Medium, Phase};
 use photonvdb::reference::{Limits, Unwatched, render_reference};
 use photonvdb::render::{RenderOptions, Unobserved, render};
 use photonvdb::scene::{Overrides, Scene};
@@ -141,7 +142,7 @@ fn volume(medium: &str, lights: Vec<Light>) -> Scene {
     let root = env!("CARGO_MANIFEST_DIR");
     let light = "[[light]]\nkind = \"point\"\nposition = [0, 5, 0]\nintensity = 1\n";
     let text = format!(
-        "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[medium]\nkind = \"vdb\"\nfile = \"{root}/{medium}\n{light}"
+        "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[[medium]]\nkind = \"vdb\"\nfile = \"{root}/{medium}\n{light}"
     );
     std::fs::write(&path, text).unwrap();
     let mut scene = Scene::load_with(&path, &Overrides::default()).unwrap();
@@ -162,6 +163,35 @@ fn smoke_in_sunlight() {
 fn a_fire_by_its_own_light() {
     let fire = "media/fire.vdb\"\ndensity_scale = 9\nalbedo = [0.8, 0.78, 0.75]\ntemperature = \"temperature\"\nflame = \"flame\"\nemission_scale = 0.02\nflame_color = [20, 5, 1]";
     assert_agree(&mut volume(fire, Vec::new()), "fire");
+}
+
+/// A cloud's droplets in sun and sky.
+#[test]
+fn fog_of_droplets() {
+    let medium = Medium { phase: Phase::droplets(8.0), ..grey_fog(ball(1.0), 3.0, 0.95, 0.0) };
+    let mut scene = scene(medium, sun(), 1);
+    scene.lights.push(white_sky());
+    assert_agree(&mut scene, "droplets");
+}
+
+const FOG: &str = "[[medium]]\nkind = \"homogeneous\"\nbounds = { center = [0.1, 0.2, 0], radius = 0.9 }\nsigma_t = 0.8\nalbedo = [0.9, 0.95, 0.99]\n";
+
+#[test]
+fn smoke_in_fog() {
+    let smoke = "media/smoke_plume.vdb\"\ndensity_scale = 20\nalbedo = [0.9, 0.8, 0.7]\nphase = { kind = \"double-henyey-greenstein\", g1 = 0.6, g2 = -0.3, weight = 0.8 }";
+    let position = DVec3::new(0.1, 0.0, 0.1);
+    let lights = vec![
+        sun(),
+        white_sky(),
+        Light::Point(PointLight { position, intensity: Rgb::splat(0.1 * PI) }),
+    ];
+    assert_agree(&mut volume(&format!("{smoke}\n{FOG}"), lights), "smoke in fog");
+}
+
+#[test]
+fn fire_in_fog() {
+    let fire = "media/fire.vdb\"\ndensity_scale = 9\nalbedo = [0.8, 0.78, 0.75]\ntemperature = \"temperature\"\nflame = \"flame\"\nemission_scale = 0.02\nflame_color = [20, 5, 1]";
+    assert_agree(&mut volume(&format!("{fire}\n{FOG}"), Vec::new()), "fire in fog");
 }
 
 #[test]

@@ -58,6 +58,6 @@ fn plans_read_as_a_sentence() {
     );
     assert_eq!(
         first_line("fire_smoke.toml"),
-        "density grid, anisotropic, chromatic, 1 spot light, 1 sphere light: majorants, no emission"
+        "density grid, anisotropic (mean cosine 0.20), chromatic, 1 spot light, 1 sphere light: majorants, no emission"
     );
 }

@@ -42,6 +42,7 @@ fn every_watt_is_accounted_for() {
             fog(ball(1.0), COLORS, TINTS, 0.0),
             smoke(Rgb::splat(0.95), 0.3),
             smoke(TINTS, 0.0),
+            Medium::of_volumes(vec![smoke(TINTS, 0.5), grey_fog(CUBE, 1.0, 0.9, 0.0)]).unwrap(),
         ]
     };
     for kind in [EmissionKind::Random, EmissionKind::Stratified, EmissionKind::Sobol] {

@@ -24,7 +24,7 @@ use divisor::Shares;
 
 use crate::map::{Nearest, NearestPhotons, PhotonMap};
 use crate::math::{Ball, DVec3, Rgb};
-use crate::medium::{Extinction, ISOTROPIC, Medium};
+use crate::medium::{Extinction, ISOTROPIC, Medium, Scattering};
 
 /// How the map is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ impl<'a, E: Extinction> Estimator<'a, E> {
 
     /// Fluence at a place \[W/m^2\].
     pub fn fluence(&mut self, place: DVec3) -> Estimate {
-        let gathered = self.gather_fluence(place, 0.5, |_| 1.0);
+        let gathered = self.gather_fluence(place, 0.5, |_, power, weight| power * weight);
         let value = gathered.single + gathered.multiple;
         Estimate { value, radius: gathered.radius, photon_count: gathered.photon_count }
     }
@@ -105,20 +105,20 @@ impl<'a, E: Extinction> Estimator<'a, E> {
     /// Light scattered at a place into a direction of travel, per sigma_s: the phase-weighted fluence \[W/(m^2 sr)\].
     /// `turn` in \[0, 1) turns the quadrature of the ball.
     pub fn in_scattered(&mut self, place: DVec3, direction: DVec3, turn: f64) -> InScattered {
-        let phase = self.medium.phase;
+        let scattering = self.extinction.scattering_at(self.medium, place);
         let map = self.finder.map();
-        self.gather_fluence(place, turn, |photon| match map.direction(photon) {
-            Some(incoming) => phase.density(incoming.dot(direction)),
-            None => ISOTROPIC,
+        self.gather_fluence(place, turn, |photon, power, weight| match map.direction(photon) {
+            Some(incoming) => scattering.scatter(power, weight, incoming.dot(direction)),
+            None => power * (weight * ISOTROPIC),
         })
     }
 
-    /// Sums `factor` times fluence over the photons about a place.
+    /// Sums what is `seen` of each photon's power times its weight in the fluence over those about a place.
     fn gather_fluence(
         &mut self,
         place: DVec3,
         turn: f64,
-        factor: impl Fn(u32) -> f64,
+        seen: impl Fn(u32, Rgb, f64) -> Rgb,
     ) -> InScattered {
         let Self { medium, extinction, finder, options } = self;
         let map = finder.map();
@@ -148,7 +148,7 @@ impl<'a, E: Extinction> Estimator<'a, E> {
                     clipped * moments.linear_weight(offset)
                 }
             };
-            let light = rgb(map.power(photon)) * (clipped * factor(photon));
+            let light = seen(photon, rgb(map.power(photon)), clipped);
             match map.order(photon) {
                 Some(0) => gathered.single += light,
                 _ => gathered.multiple += light,

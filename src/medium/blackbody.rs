@@ -120,6 +120,33 @@ mod tests {
         assert!((luminance / 6e5 - 1.0).abs() < 6e-3, "{luminance}");
     }
 
+    /// Lumens a watt of an ideal blackbody, as reference works give them: 54.7 at 4000 K, 95 at 7000 K (8.0 and 14 % of 683), and
+    /// nowhere more than near 6640 K.
+    #[test]
+    fn luminous_efficacies_are_those_of_reference_works() {
+        let efficacy = |kelvin: f64| {
+            let power = 5.670_374_419e-8 * kelvin.powi(4) / std::f64::consts::PI;
+            683.0 * blackbody_xyz(kelvin).y / power
+        };
+        for (kelvin, lumens) in [(4000.0, 54.7), (7000.0, 95.0)] {
+            assert!((efficacy(kelvin) - lumens).abs() < 0.1, "{kelvin}: {}", efficacy(kelvin));
+        }
+        assert!(efficacy(6640.0) > efficacy(6540.0) && efficacy(6640.0) > efficacy(6740.0));
+    }
+
+    /// White D65 is (1, 1, 1), and within the gamut RGB has the luminance of XYZ: 0.2126 R + 0.7152 G + 0.0722 B = Y.
+    #[test]
+    fn rgb_keeps_white_and_luminance() {
+        let white = XYZ_TO_RGB * DVec3::new(0.950_47, 1.0, 1.088_83);
+        assert!((white - DVec3::ONE).abs().max_element() < 1e-5, "{white}");
+        for kelvin in [2000.0, 2700.0, 4000.0, 6500.0, 12_000.0] {
+            let luminance =
+                blackbody_radiance(kelvin).dot(Rgb::new(0.212_673, 0.715_152, 0.072_175));
+            let ratio = luminance / blackbody_xyz(kelvin).y;
+            assert!((ratio - 1.0).abs() < 1e-4, "{kelvin}: {ratio}");
+        }
+    }
+
     /// Wien's displacement and the Stefan-Boltzmann law hold for the constants used.
     #[test]
     fn the_constants_make_stefan_boltzmann() {

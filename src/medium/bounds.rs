@@ -94,6 +94,24 @@ impl Bounds {
         }
     }
 
+    /// Lowest and highest corner of the axis-aligned box about the region \[m\]; `None` if infinite.
+    pub fn extent(&self) -> Option<(DVec3, DVec3)> {
+        match *self {
+            Self::Box { min, max } => Some((min, max)),
+            Self::Sphere { center, radius } => {
+                Some((center - DVec3::splat(radius), center + DVec3::splat(radius)))
+            }
+            Self::Parallelepiped(shape) => {
+                let [low, high] = [DVec3::min, DVec3::max].map(|choose| {
+                    let edges = shape.edges.iter().map(|edge| choose(*edge, DVec3::ZERO));
+                    shape.corner + edges.sum::<DVec3>()
+                });
+                Some((low, high))
+            }
+            Self::Infinite => None,
+        }
+    }
+
     /// The box as a parallelepiped; `None` for round and infinite regions.
     pub fn parallelepiped(&self) -> Option<Parallelepiped> {
         match *self {

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::{Medium, Parallelepiped};
+use super::{Bounds, Medium, Parallelepiped};
 use crate::math::{Ball, DVec3, Rgb, mean_channel};
 
 /// Most cells: 16 MB, and about a second to fill.
@@ -45,11 +45,12 @@ pub struct EmissivePlace {
 }
 
 impl EmissiveCells {
-    /// The cells of a medium, of edges near `voxel_size` \[m\]; `None` if it emits nothing or has no bounds.
-    pub(super) fn new(medium: &Medium, voxel_size: f64) -> Option<Self> {
-        let shape = match medium.bounds.parallelepiped() {
+    /// The cells of a medium that emits nothing outside of `bounds`, of edges near `voxel_size` \[m\]; `None` if it emits
+    /// nothing or the bounds are infinite.
+    pub(super) fn new(medium: &Medium, bounds: &Bounds, voxel_size: f64) -> Option<Self> {
+        let shape = match bounds.parallelepiped() {
             Some(shape) => shape,
-            None => box_about(medium.bounds.enclosing_ball()?),
+            None => box_about(bounds.enclosing_ball()?),
         };
         let counts = cell_counts(shape.edges().map(|edge| edge.length() / voxel_size));
         let cell_count = counts.iter().product::<usize>();

@@ -19,6 +19,9 @@ pub struct Emissivity {
     scale: f64,
     temperature: Option<ValueGrid>,
     flame: Option<Flame>,
+    has_heat: bool,
+    has_flame: bool,
+    voxel_size: f64,
     cells: Option<EmissiveCells>,
 }
 
@@ -34,7 +37,23 @@ pub struct Flame {
 impl Emissivity {
     /// Of blackbodies at the kelvins of a grid, of a flame, or both; `scale` multiplies all.
     pub fn new(temperature: Option<ValueGrid>, flame: Option<Flame>, scale: f64) -> Self {
-        Self { scale, temperature, flame, cells: None }
+        let (has_heat, has_flame) = (temperature.is_some(), flame.is_some());
+        let grids = temperature.iter().chain(flame.as_ref().map(|flame| &flame.grid));
+        let voxel_size = grids.map(ValueGrid::voxel_size).fold(f64::INFINITY, f64::min);
+        Self { scale, temperature, flame, has_heat, has_flame, voxel_size, cells: None }
+    }
+
+    /// What is known of the light of several volumes together, which have their grids; `None` if none has light.
+    pub(super) fn of_volumes<'a>(volumes: impl Iterator<Item = &'a Self>) -> Option<Self> {
+        volumes.fold(None, |all: Option<Self>, volume| {
+            let all = all.unwrap_or_else(|| Self::new(None, None, 1.0));
+            Some(Self {
+                has_heat: all.has_heat || volume.has_heat,
+                has_flame: all.has_flame || volume.has_flame,
+                voxel_size: all.voxel_size.min(volume.voxel_size),
+                ..all
+            })
+        })
     }
 
     /// Of heat, per sigma_a \[W/(m^2 sr)\].
@@ -56,19 +75,17 @@ impl Emissivity {
 
     /// Whether heat glows here.
     pub fn has_heat(&self) -> bool {
-        self.temperature.is_some()
+        self.has_heat
     }
 
     /// Whether flames do.
     pub fn has_flame(&self) -> bool {
-        self.flame.is_some()
+        self.has_flame
     }
 
     /// The edge of a voxel, the shortest of all grids' \[m\]: emissivity hardly varies within.
     pub fn voxel_size(&self) -> f64 {
-        let temperature = self.temperature.iter().map(ValueGrid::voxel_size);
-        let flame = self.flame.iter().map(|flame| flame.grid.voxel_size());
-        temperature.chain(flame).fold(f64::INFINITY, f64::min)
+        self.voxel_size
     }
 
     /// Where the light comes from; `None` if there is none.

@@ -6,7 +6,9 @@
 //! unbiased and never weighs by more than 1 / q_c.
 
 use crate::math::{DVec3, Random, Ray, Rgb, Span, exp, uniform};
-use crate::medium::{BoostedFlight, BoostedQuantile, Extinction, Flight, RayProfile};
+use crate::medium::{
+    BoostedFlight, BoostedQuantile, Extinction, Flight, Medium, Phase, RayProfile,
+};
 
 /// The same sigma_t everywhere and in every channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,11 +18,18 @@ pub struct UniformExtinction {
 }
 
 impl Extinction for UniformExtinction {
+    type Scattering = Phase;
+
     const IS_UNIFORM: bool = true;
 
     #[inline]
     fn sigma_t(&self, _position: DVec3) -> Rgb {
         Rgb::splat(self.sigma_t)
+    }
+
+    #[inline]
+    fn scattering_at(&self, medium: &Medium, _position: DVec3) -> Phase {
+        medium.phase
     }
 
     #[inline]
@@ -57,11 +66,18 @@ pub struct ChromaticExtinction {
 }
 
 impl Extinction for ChromaticExtinction {
+    type Scattering = Phase;
+
     const IS_UNIFORM: bool = true;
     const IS_CHROMATIC: bool = true;
 
     fn sigma_t(&self, _position: DVec3) -> Rgb {
         self.sigma_t
+    }
+
+    #[inline]
+    fn scattering_at(&self, medium: &Medium, _position: DVec3) -> Phase {
+        medium.phase
     }
 
     fn optical_depth(&self, _ray: &Ray, span: Span) -> Rgb {

@@ -1,6 +1,6 @@
 //! Participating media: what fills the scene, how it attenuates light, and how it scatters it.
 //!
-//! A [`Medium`] is an [`Extinction`] (homogeneous or a grid) inside [`Bounds`], with an albedo (one for all, or coloured
+//! A [`Medium`] is an [`Extinction`] (homogeneous, a grid, or several [`Volumes`]) inside [`Bounds`], with an albedo (one for all, or coloured
 //! place by place), a phase [`Phase`] and, where it glows, an [`Emissivity`]. Tracing and rendering are generic over the extinction, so that a homogeneous fog
 //! pays nothing for grids.
 
@@ -17,6 +17,9 @@ mod overlap;
 mod pages;
 mod phase;
 mod profile;
+mod scattering;
+
+mod volumes;
 
 pub mod vdb;
 
@@ -28,12 +31,17 @@ pub use grid::{ColorGrid, GridExtinction, ValueGrid};
 pub use homogeneous::{ChromaticExtinction, UniformExtinction};
 pub use moments::BallMoments;
 pub use overlap::BallIntegral;
-pub use phase::{ISOTROPIC, Phase};
+pub use phase::{ISOTROPIC, LARGEST_DROPLET, Lobe, Phase, SMALLEST_DROPLET};
 pub use profile::{ProfileKnot, RayProfile};
+pub use scattering::{PhaseMixture, PhaseShare, Scattering};
+pub use volumes::{Volumes, VolumesError};
 
 use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, exp};
 
-/// The medium of a scene.
+/// The medium of a scene, or one volume of it.
+///
+/// Where `extinction` is [`Several`](MediumExtinction::Several), albedo, colour, phase function and emissivity are those of the
+/// volumes: `albedo` is the largest, `phase` that of one of them.
 #[derive(Debug)]
 pub struct Medium {
     /// Where the medium is; outside it there is nothing.
@@ -51,14 +59,51 @@ pub struct Medium {
 }
 
 impl Medium {
+    /// The medium that media make together; one alone stays as it is.
+    ///
+    /// # Errors
+    /// [`VolumesError`], with the number of the medium.
+    pub fn of_volumes(mut media: Vec<Self>) -> Result<Self, VolumesError> {
+        if media.len() == 1
+            && let Some(only) = media.pop()
+        {
+            return Ok(only);
+        }
+        // Places are drawn for all of them together.
+        media.iter_mut().filter_map(|m| m.emissivity.as_mut()).for_each(|own| own.set_cells(None));
+        let volumes = Volumes::new(media)?;
+        let (bounds, media) = (volumes.bounds(), volumes.media());
+        let albedo = media.iter().map(Self::max_albedo).fold(Rgb::ZERO, Rgb::max);
+        let phase = media.first().map_or(Phase::Isotropic, |first| first.phase);
+        let emissivity =
+            Emissivity::of_volumes(media.iter().filter_map(|m| m.emissivity.as_deref()));
+        let glowing = media.iter().filter(|m| m.emissivity.is_some()).collect::<Vec<_>>();
+        let glow_bounds = match glowing.as_slice() {
+            [only] => only.bounds,
+            _ => bounds,
+        };
+        let extinction = MediumExtinction::Several(Box::new(volumes));
+        let whole = Self { bounds, extinction, albedo, color: None, phase, emissivity: None };
+        Ok(match emissivity {
+            Some(emissivity) => whole.glowing_in(emissivity, &glow_bounds),
+            None => whole,
+        })
+    }
+
     /// The medium with light of its own; an infinite one has none.
-    pub fn with_emissivity(mut self, emissivity: Emissivity) -> Self {
+    pub fn with_emissivity(self, emissivity: Emissivity) -> Self {
         if matches!(self.bounds, Bounds::Infinite) {
             return self;
         }
+        let bounds = self.bounds;
+        self.glowing_in(emissivity, &bounds)
+    }
+
+    /// The medium with light that comes from within `bounds`.
+    fn glowing_in(mut self, emissivity: Emissivity, bounds: &Bounds) -> Self {
         let voxel_size = emissivity.voxel_size();
         self.emissivity = Some(Box::new(emissivity));
-        let cells = EmissiveCells::new(&self, voxel_size);
+        let cells = EmissiveCells::new(&self, bounds, voxel_size);
         if let Some(emissivity) = &mut self.emissivity {
             emissivity.set_cells(cells);
         }
@@ -67,21 +112,71 @@ impl Medium {
 
     /// Emissivity at a place \[W/(m^3 sr)\]; 0 outside the bounds.
     pub fn emissivity_at(&self, position: DVec3) -> Rgb {
-        let Some(emissivity) = &self.emissivity else { return Rgb::ZERO };
-        if !self.bounds.contains(position) {
+        if self.emissivity.is_none() || !self.bounds.contains(position) {
             return Rgb::ZERO;
         }
-        let flame = emissivity.flame(position);
-        match emissivity.blackbody(position) {
+        if let MediumExtinction::Several(volumes) = &self.extinction {
+            return volumes.emissivity_at(position);
+        }
+        let flame = self.flame_at(position);
+        match self.heat_at(position) {
             Rgb::ZERO => flame,
-            blackbody => {
-                let sigma_t = self.extinction.sigma_t(position);
-                flame + blackbody * sigma_t * (Rgb::ONE - self.albedo_at(position))
+            heat => flame + heat * self.extinction.sigma_t(position),
+        }
+    }
+
+    /// Radiance of heat per sigma_t at a place inside the bounds: what a blackbody has, times 1 - albedo \[W/(m^2 sr)\].
+    pub fn heat_at(&self, position: DVec3) -> Rgb {
+        if let MediumExtinction::Several(volumes) = &self.extinction {
+            return volumes.heat_at(position);
+        }
+        let Some(emissivity) = &self.emissivity else { return Rgb::ZERO };
+        match emissivity.blackbody(position) {
+            Rgb::ZERO => Rgb::ZERO,
+            blackbody => blackbody * (Rgb::ONE - self.albedo_at(position)),
+        }
+    }
+
+    /// Emissivity of flames at a place inside the bounds \[W/(m^3 sr)\].
+    pub fn flame_at(&self, position: DVec3) -> Rgb {
+        match (&self.extinction, &self.emissivity) {
+            (MediumExtinction::Several(volumes), _) => volumes.flame_at(position),
+            (_, Some(emissivity)) => emissivity.flame(position),
+            (_, None) => Rgb::ZERO,
+        }
+    }
+
+    /// Where scattered light goes; `None` if volumes scatter differently.
+    pub fn shared_phase(&self) -> Option<Phase> {
+        match &self.extinction {
+            MediumExtinction::Several(volumes) => volumes.shared_phase(),
+            _ => Some(self.phase),
+        }
+    }
+
+    /// Whether it scatters all ways alike.
+    pub fn is_isotropic(&self) -> bool {
+        match &self.extinction {
+            MediumExtinction::Several(volumes) => volumes.media().iter().all(Self::is_isotropic),
+            _ => self.phase.is_isotropic(),
+        }
+    }
+
+    /// Whether it attenuates, scatters and emits the same in all channels.
+    pub fn is_grey(&self) -> bool {
+        match &self.extinction {
+            MediumExtinction::Several(volumes) => volumes.media().iter().all(Self::is_grey),
+            extinction => {
+                self.albedo == Rgb::splat(self.albedo.x)
+                    && self.color.is_none()
+                    && self.emissivity.is_none()
+                    && !matches!(extinction, MediumExtinction::Chromatic(_))
             }
         }
     }
 
-    /// The albedo at a place: the medium's own times its colour there, each channel at most 1.
+    /// The albedo at a place: the medium's own times its colour there, each channel at most 1. Of several volumes only
+    /// [`Extinction::albedo_at`] knows it.
     #[inline]
     pub fn albedo_at(&self, position: DVec3) -> Rgb {
         match &self.color {
@@ -106,6 +201,8 @@ pub enum MediumExtinction {
     Chromatic(ChromaticExtinction),
     /// sigma_t = density_scale * density, from a VDB grid.
     Grid(Box<GridExtinction>),
+    /// The sum of several volumes.
+    Several(Box<Volumes>),
 }
 
 impl MediumExtinction {
@@ -115,12 +212,16 @@ impl MediumExtinction {
             Self::Uniform(uniform) => uniform.sigma_t(position),
             Self::Chromatic(chromatic) => chromatic.sigma_t(position),
             Self::Grid(grid) => grid.sigma_t(position),
+            Self::Several(volumes) => volumes.sigma_t(position),
         }
     }
 }
 
 /// How strongly a medium attenuates light along rays. `Span`s passed in lie inside the medium's bounds.
 pub trait Extinction: Sync {
+    /// How light is scattered at a place.
+    type Scattering: Scattering;
+
     /// Whether sigma_t is the same at every place of the bounds: then no photon needs its own.
     const IS_UNIFORM: bool;
 
@@ -134,6 +235,26 @@ pub trait Extinction: Sync {
 
     /// sigma_t at a point \[1/m\]; 0 outside a grid's bounds. A uniform extinction does not look at the point.
     fn sigma_t(&self, position: DVec3) -> Rgb;
+
+    /// sigma_s / sigma_t at a place of `medium`, whose extinction this is.
+    #[inline]
+    fn albedo_at(&self, medium: &Medium, position: DVec3) -> Rgb {
+        medium.albedo_at(position)
+    }
+
+    /// Where light scattered at a place of `medium` goes.
+    fn scattering_at(&self, medium: &Medium, position: DVec3) -> Self::Scattering;
+
+    /// The medium that a collision at a place of `medium` is with: itself, or one of its volumes, by chance.
+    #[inline]
+    fn struck<'a>(
+        &'a self,
+        medium: &'a Medium,
+        _position: DVec3,
+        _random: &mut Random,
+    ) -> &'a Medium {
+        medium
+    }
 
     /// Integral of sigma_t over the span, exact up to rounding.
     fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb;
@@ -227,6 +348,12 @@ pub struct BoostedFlight {
 }
 
 impl BoostedQuantile {
+    /// The flight through a grey medium, inverted in the profile of its way.
+    fn flight_along(self, profile: &RayProfile) -> BoostedFlight {
+        let opacity = -(-profile.total_depth()).exp_m1();
+        self.flight(opacity, |quantile| profile.flight_at(-(-quantile).ln_1p()))
+    }
+
     /// The flight through a medium of the given opacity, inverted at the quantile it asks for.
     #[inline]
     pub fn flight(self, opacity: f64, invert: impl FnOnce(f64) -> Flight) -> BoostedFlight {

@@ -3,10 +3,12 @@
 //! A renderer asks the same ray many times for its transmittance, and wants points on it that are
 //! equally spaced in transmittance. Uniform media answer in closed form; grids tabulate one knot a voxel
 //! cell that the ray crosses. Between knots sigma_t is the quadratic through its three values, whose
-//! integral (Simpson's rule) is that of the trilinear density's cubic at every knot.
+//! integral (Simpson's rule) is that of the trilinear density's cubic at every knot. Profiles of volumes that overlap add up:
+//! between the knots of all of them the sum is a quadratic too.
 
 use super::grid::cubic::Cubic;
 use crate::math::{Rgb, Span, exp};
+use crate::medium::Flight;
 
 /// The optical depth of one ray over one span. Reused from ray to ray: it keeps its allocation.
 #[derive(Debug, Default)]
@@ -52,6 +54,54 @@ impl RayProfile {
             None if knot.distance <= start => {}
             _ => self.knots.push(knot),
         }
+    }
+
+    /// Describes the sum of grey profiles, each of a part of the span.
+    pub fn set_sum(&mut self, span: Span, parts: &[Self]) {
+        self.begin(span);
+        let mut ends: Vec<f64> = parts.iter().flat_map(Self::joints).chain([span.end]).collect();
+        ends.retain(|end| *end > span.start && *end <= span.end);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        // The piece of each part that the place is in.
+        let mut pieces = vec![0; parts.len()];
+        let mut start = span.start;
+        for end in ends {
+            let middle = 0.5 * (start + end);
+            let (mut optical_depth, mut sigma_t) = (0.0, [0.0; 3]);
+            for (part, piece) in parts.iter().zip(&mut pieces) {
+                while part.knots.get(*piece).is_some_and(|knot| knot.distance <= start) {
+                    *piece += 1;
+                }
+                for (sum, place) in sigma_t.iter_mut().zip([start, middle, end]) {
+                    *sum += part.sigma_t_in(*piece, middle, place);
+                }
+                optical_depth += part.depth_in(*piece, end);
+            }
+            self.push(ProfileKnot { distance: end, optical_depth, sigma_t });
+            start = end;
+        }
+    }
+
+    /// Where what it describes may change its form.
+    fn joints(&self) -> impl Iterator<Item = f64> {
+        [self.start(), self.end()].into_iter().chain(self.knots.iter().map(|knot| knot.distance))
+    }
+
+    /// sigma_t at a distance by the quadratic of the piece that `within` lies in; 0 if that is beyond the span or the last knot.
+    fn sigma_t_in(&self, piece: usize, within: f64, distance: f64) -> f64 {
+        if within < self.start() || within > self.end() {
+            return 0.0;
+        }
+        if self.knots.is_empty() {
+            return self.uniform.x;
+        }
+        let Some(knot) = self.knots.get(piece) else { return 0.0 };
+        let (start, _) = self.start_of(piece);
+        let u = ((distance - start) / (knot.distance - start)).clamp(0.0, 1.0);
+        let [first, middle, last] = knot.sigma_t;
+        let (a, b) = (2.0 * (first + last) - 4.0 * middle, 4.0 * middle - 3.0 * first - last);
+        first + u * (b + u * a)
     }
 
     /// The span described; `None` before the first ray.
@@ -102,9 +152,31 @@ impl RayProfile {
             + length * Cubic::through(knot.sigma_t).invert((optical_depth - depth_before) / length)
     }
 
+    /// Optical depth of the whole span, where all channels are the same.
+    pub(super) fn total_depth(&self) -> f64 {
+        self.optical_depth(self.end()).x
+    }
+
+    /// The flight that collides where the optical depth reaches `optical_depth`, where all channels are the same.
+    pub(super) fn flight_at(&self, optical_depth: f64) -> Flight {
+        let distance = self.distance_at(optical_depth, 0);
+        match distance < self.end() {
+            true => Flight::Collision { distance, weight: Rgb::ONE },
+            false => Flight::Escape { weight: Rgb::ONE },
+        }
+    }
+
     /// Optical depth to a distance where there are knots.
     fn scalar_depth(&self, distance: f64) -> f64 {
-        let piece = self.knots.partition_point(|knot| knot.distance < distance);
+        self.depth_in(self.knots.partition_point(|knot| knot.distance < distance), distance)
+    }
+
+    /// Optical depth to a distance that lies in a piece, or beyond the last one; of a uniform medium to any.
+    fn depth_in(&self, piece: usize, distance: f64) -> f64 {
+        if self.knots.is_empty() {
+            let length = distance.clamp(self.start(), self.end()) - self.start();
+            return uniform_depth(self.uniform, length).x;
+        }
         let (start, depth_before) = self.start_of(piece);
         let Some(knot) = self.knots.get(piece) else { return depth_before };
         let length = knot.distance - start;

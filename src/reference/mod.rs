@@ -102,6 +102,9 @@ pub fn render_reference(
                 add_pass(&mut film, scene, chromatic, samples..next)
             }
             MediumExtinction::Grid(grid) => add_pass(&mut film, scene, &**grid, samples..next),
+            MediumExtinction::Several(volumes) => {
+                add_pass(&mut film, scene, &**volumes, samples..next)
+            }
         }
         samples = next;
         let (seconds, relative_error) = (started.elapsed().as_secs_f64(), relative_error(&film));
@@ -134,6 +137,9 @@ pub fn path_light(
             PathTracer::new(scene, chromatic).light_along(*ray, random)
         }
         MediumExtinction::Grid(grid) => PathTracer::new(scene, &**grid).light_along(*ray, random),
+        MediumExtinction::Several(volumes) => {
+            PathTracer::new(scene, &**volumes).light_along(*ray, random)
+        }
     })
 }
 

@@ -14,7 +14,7 @@
 
 use crate::light::{Environment, Illumination, Light, Shadows};
 use crate::math::{DVec3, Random, Ray, Rgb, Span, max_channel, uniform};
-use crate::medium::{Extinction, Flight, Medium};
+use crate::medium::{Extinction, Flight, Medium, Phase};
 use crate::scene::Scene;
 
 use super::aim::Aim;
@@ -82,6 +82,8 @@ enum End {
 /// Where it collides.
 struct Collision {
     place: DVec3,
+    /// How it scatters there.
+    phase: Phase,
     /// After it.
     throughput: Rgb,
     /// Of all lights, scattered here; to be multiplied by the throughput after it.
@@ -161,15 +163,17 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
 
             throughput = collision.throughput;
             seen.add(order + 1, throughput * collision.light);
-            let aimed = self.aimed_light(collision.place, ray.direction, throughput, random);
+            let Collision { place, phase, .. } = collision;
+            let arriving = Ray::new(place, ray.direction);
+            let aimed = self.aimed_light(&arriving, phase, throughput, random);
             seen.add(order + 2, throughput * aimed);
             match roulette(throughput, random) {
                 Some(survivor) => throughput = survivor,
                 None => break,
             }
-            let direction = medium.phase.sample_direction(ray.direction, random);
-            phase_density = Some(medium.phase.density(direction.dot(ray.direction)));
-            ray = Ray::new(collision.place, direction);
+            let direction = phase.sample_direction(ray.direction, random);
+            phase_density = Some(phase.density(direction.dot(ray.direction)));
+            ray = Ray::new(place, direction);
         }
         seen
     }
@@ -186,17 +190,17 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     ) -> Rgb {
         let (medium, extinction) = (self.medium, self.extinction);
         let mut sum = Rgb::ZERO;
-        let (mut throughput, mut place, mut direction) = (Rgb::ONE, place, -towards);
+        let (mut throughput, mut arriving) = (Rgb::ONE, Ray::new(place, -towards));
+        let mut phase = extinction.struck(medium, place, random).phase;
         for bounce in 0..=bounces {
             if bounce == bounces {
-                sum += throughput * end(place, -direction);
+                sum += throughput * end(arriving.origin, -arriving.direction);
             } else {
-                sum += throughput * self.aimed_light(place, direction, throughput, random);
+                sum += throughput * self.aimed_light(&arriving, phase, throughput, random);
             }
-            let before = direction;
-            direction = medium.phase.sample_direction(before, random);
-            let ray = Ray::new(place, direction);
-            let phase_density = Some(medium.phase.density(direction.dot(before)));
+            let direction = phase.sample_direction(arriving.direction, random);
+            let ray = Ray::new(arriving.origin, direction);
+            let phase_density = Some(phase.density(direction.dot(arriving.direction)));
             let span = medium.bounds.intersect(&ray);
             // Lights that the first ray meets are scattered but once.
             if bounce > 0 && self.has_extended {
@@ -236,7 +240,8 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 Some(survivor) => throughput = survivor,
                 None => break,
             }
-            place = collision.place;
+            arriving = Ray::new(collision.place, direction);
+            phase = collision.phase;
         }
         sum
     }
@@ -255,12 +260,14 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             Flight::Escape { weight } => End::Escape { weight },
             Flight::Collision { weight, .. } => {
                 let place = ray.at(distance);
-                let throughput = *throughput * weight * self.medium.albedo_at(place);
+                let struck = self.extinction.struck(self.medium, place, random);
+                let phase = struck.phase;
+                let throughput = *throughput * weight * struck.albedo_at(place);
                 match throughput {
                     Rgb::ZERO => End::Absorbed,
                     _ => {
-                        let light = self.lights_at(segment, distance, random);
-                        End::Collision(Collision { place, throughput, light })
+                        let light = self.lights_at(segment, distance, phase, random);
+                        End::Collision(Collision { place, phase, throughput, light })
                     }
                 }
             }
@@ -326,14 +333,16 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let distance = towards.sample_distance(uniform(random));
         let place = segment.ray.at(distance);
         let sigma_t = self.extinction.sigma_t(place);
-        let sigma_s = sigma_t * self.medium.albedo_at(place);
+        let struck = self.extinction.struck(self.medium, place, random);
+        let sigma_s = sigma_t * struck.albedo_at(place);
         if sigma_s == Rgb::ZERO {
             return Rgb::ZERO;
         }
         let flight = segment.flight_density(distance, sigma_t);
         let density = segment.density(light, Some(towards), distance, flight);
-        let scattered =
-            self.light_at((index, light), place, segment.ray.direction, [flight, density], random);
+        let arriving = Ray::new(place, segment.ray.direction);
+        let from = (index, light);
+        let scattered = self.light_at(from, &arriving, struck.phase, [flight, density], random);
         if scattered == Rgb::ZERO {
             return Rgb::ZERO;
         }
@@ -342,8 +351,15 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     }
 
     /// Light of all lights, scattered at the collision that ends a segment.
-    fn lights_at(&mut self, segment: &Segment<E>, distance: f64, random: &mut Random) -> Rgb {
+    fn lights_at(
+        &mut self,
+        segment: &Segment<E>,
+        distance: f64,
+        phase: Phase,
+        random: &mut Random,
+    ) -> Rgb {
         let place = segment.ray.at(distance);
+        let arriving = Ray::new(place, segment.ray.direction);
         let flight = segment.flight_density(distance, self.extinction.sigma_t(place));
         let mut sum = Rgb::ZERO;
         for (index, light) in self.lights.iter().enumerate() {
@@ -357,28 +373,27 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
                 _ => 1.0,
             };
             self.ways[index] = ways;
-            let from = (index, light);
-            sum += self.light_at(from, place, segment.ray.direction, [1.0, ways], random);
+            sum += self.light_at((index, light), &arriving, phase, [1.0, ways], random);
         }
         sum
     }
 
-    /// Light of the point lights in the medium, scattered on rays aimed at them and then at `place`.
+    /// Light of the point lights in the medium, scattered on rays aimed at them and then where a ray arrives, its origin.
     fn aimed_light(
         &self,
-        place: DVec3,
-        direction: DVec3,
+        arriving: &Ray,
+        phase: Phase,
         throughput: Rgb,
         random: &mut Random,
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
         let (medium, extinction) = (self.medium, self.extinction);
         for (index, light) in self.lights.iter().enumerate() {
-            let aim = peak_of(light, medium).and_then(|peak| Aim::new(place, peak));
+            let aim = peak_of(light, medium).and_then(|peak| Aim::new(arriving.origin, peak));
             let Some(aim) = aim else { continue };
-            let ray = Ray::new(place, aim.sample_direction(random));
+            let ray = Ray::new(arriving.origin, aim.sample_direction(random));
             let Some(span) = medium.bounds.intersect(&ray) else { continue };
-            let phase_density = Some(medium.phase.density(ray.direction.dot(direction)));
+            let phase_density = Some(phase.density(ray.direction.dot(arriving.direction)));
             let segment = Segment { medium, extinction, ray, span, throughput, phase_density };
             if let Some(towards) = segment.equi_angular(light) {
                 sum += self.near_light(&segment, (index, light), &towards, random);
@@ -387,24 +402,25 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         sum
     }
 
-    /// Phase-weighted light from one direction towards a light, attenuated, over the density of all ways that find it: `density` is
-    /// that of all ways that find the place, of which `flight` may go on to meet the light by itself.
+    /// Phase-weighted light from one direction towards a light, attenuated, where a ray arrives, its origin; over the density of all ways that
+    /// find it: `density` is that of all ways that find the place, of which `flight` may go on to meet the light by itself.
     fn light_at(
         &self,
         (index, light): (usize, &Light),
-        place: DVec3,
-        direction: DVec3,
+        arriving: &Ray,
+        phase: Phase,
         [flight, density]: [f64; 2],
         random: &mut Random,
     ) -> Rgb {
-        let Some(sample) = sample_light(light, place, random) else { return Rgb::ZERO };
+        let Some(sample) = sample_light(light, arriving.origin, random) else { return Rgb::ZERO };
         // Against the light's travel, as the path goes: the phase function is the same both ways.
-        let phase = self.medium.phase.density(sample.from.direction.dot(direction));
+        let phase = phase.density(sample.from.direction.dot(arriving.direction));
         let met = sample.pdf.map_or(0.0, |pdf| flight * phase / pdf);
         let weighted = sample.from.irradiance * (phase / (density + met));
         if weighted == Rgb::ZERO {
             return Rgb::ZERO;
         }
+        let place = arriving.origin;
         let known = self.shadows.and_then(|shadows| shadows.transmittance(index, place));
         let Illumination { direction, distance, .. } = sample.from;
         weighted * known.unwrap_or_else(|| self.transmittance(place, direction, distance, random))

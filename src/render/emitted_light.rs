@@ -37,12 +37,12 @@ pub fn emitted_light(
         if emissivity.has_heat()
             && let Some(sampling) = ByTransmittance::between(profile, depth_before, depth)
         {
-            sum += light_of_heat(medium, emissivity, ray, &sampling, random);
+            sum += light_of_heat(medium, ray, &sampling, random);
         }
         depth_before = depth;
         if emissivity.has_flame() {
             let distance = start + length * uniform(random);
-            let flame = emissivity.flame(ray.at(distance));
+            let flame = medium.flame_at(ray.at(distance));
             if flame != Rgb::ZERO {
                 sum += flame * profile.transmittance(distance) * length;
             }
@@ -54,19 +54,17 @@ pub fn emitted_light(
 /// The share of one step, whose places are drawn by transmittance.
 fn light_of_heat(
     medium: &Medium,
-    emissivity: &Emissivity,
     ray: &Ray,
     by_transmittance: &ByTransmittance,
     random: &mut Random,
 ) -> Rgb {
     let distance = by_transmittance.sample_distance(uniform(random), uniform(random));
     let place = ray.at(distance);
-    match emissivity.blackbody(place) {
+    match medium.heat_at(place) {
         Rgb::ZERO => Rgb::ZERO,
-        blackbody => {
+        heat => {
             let sigma_t = medium.extinction.sigma_t(place);
-            let weight = by_transmittance.scattering_weight(distance, sigma_t, 1.0);
-            weight * blackbody * (Rgb::ONE - medium.albedo_at(place))
+            by_transmittance.scattering_weight(distance, sigma_t, 1.0) * heat
         }
     }
 }

@@ -65,7 +65,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         let started = Instant::now();
         observer.stage_started(Stage::Build, traced.photons.len() as u64);
         let columns = Columns {
-            direction: !medium.phase.is_isotropic(),
+            direction: !medium.is_isotropic(),
             sigma_t: !E::IS_UNIFORM,
             order: scene.render.photons_only,
         };

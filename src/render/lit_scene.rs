@@ -4,7 +4,7 @@ use crate::estimate::{Estimate, Estimator};
 use crate::map::PhotonMap;
 use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
-    ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction,
+    ChromaticExtinction, Extinction, GridExtinction, MediumExtinction, UniformExtinction, Volumes,
 };
 use crate::render::{LitMedium, Observer, RayRadiance, Reader, RenderError, RenderReport};
 use crate::scene::Scene;
@@ -21,6 +21,7 @@ enum Lit<'a> {
     Uniform(LitMedium<'a, UniformExtinction>),
     Chromatic(LitMedium<'a, ChromaticExtinction>),
     Grid(LitMedium<'a, GridExtinction>),
+    Several(LitMedium<'a, Volumes>),
 }
 
 /// Reads a lit scene, from one thread.
@@ -58,6 +59,9 @@ impl<'a> LitScene<'a> {
             MediumExtinction::Grid(grid) => {
                 Lit::Grid(LitMedium::prepare(scene, &**grid, seed, observer, &mut report)?)
             }
+            MediumExtinction::Several(volumes) => {
+                Lit::Several(LitMedium::prepare(scene, &**volumes, seed, observer, &mut report)?)
+            }
         };
         Ok(Self { lit, report })
     }
@@ -68,6 +72,7 @@ impl<'a> LitScene<'a> {
             Lit::Uniform(lit) => Box::new(lit.reader()),
             Lit::Chromatic(lit) => Box::new(lit.reader()),
             Lit::Grid(lit) => Box::new(lit.reader()),
+            Lit::Several(lit) => Box::new(lit.reader()),
         }
     }
 
@@ -77,6 +82,7 @@ impl<'a> LitScene<'a> {
             Lit::Uniform(lit) => lit.map(),
             Lit::Chromatic(lit) => lit.map(),
             Lit::Grid(lit) => lit.map(),
+            Lit::Several(lit) => lit.map(),
         }
     }
 

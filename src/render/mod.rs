@@ -76,6 +76,9 @@ pub enum RenderError {
     /// The medium has no end.
     #[error("medium.bounds: an infinite medium cannot be rendered; give it a box or a sphere")]
     InfiniteMedium,
+    /// Volumes scatter differently, and cells of a lattice hold the light of one phase function.
+    #[error("render.gather: volumes with different phase functions have no lattice; use \"knn\"")]
+    NoLattice,
     /// More photons than memory allows.
     #[error(
         "a pass of {emitted} photons stores more than {limit}; use fewer photons a pass and more --passes"
@@ -94,7 +97,7 @@ pub enum RenderError {
 /// Renders all passes, or those until the observer asks to stop: at least one.
 ///
 /// # Errors
-/// An infinite medium, or more photons than memory allows.
+/// An infinite medium, a lattice for volumes that scatter differently, or more photons than memory allows.
 pub fn render(
     scene: &Scene,
     options: &RenderOptions,
@@ -103,11 +106,17 @@ pub fn render(
     if matches!(scene.medium.bounds, Bounds::Infinite) {
         return Err(RenderError::InfiniteMedium);
     }
+    if scene.render.gather == Gather::Lattice && scene.medium.shared_phase().is_none() {
+        return Err(RenderError::NoLattice);
+    }
     match &scene.medium.extinction {
         MediumExtinction::Uniform(uniform) => Passes::new(scene, uniform, options, observer).run(),
         MediumExtinction::Chromatic(chromatic) => {
             Passes::new(scene, chromatic, options, observer).run()
         }
         MediumExtinction::Grid(grid) => Passes::new(scene, &**grid, options, observer).run(),
+        MediumExtinction::Several(volumes) => {
+            Passes::new(scene, &**volumes, options, observer).run()
+        }
     }
 }

@@ -216,7 +216,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count)
-                * self.scene.medium.albedo_at(place);
+                * self.extinction.albedo_at(&self.scene.medium, place);
             let (towards, turn) = (-ray.direction, uniform(random));
             queries.push(PhotonQuery { place, towards, weight, turn, pixel });
         }

@@ -7,7 +7,7 @@
 
 use crate::light::{Environment, Illumination, Light, Shadows, transmittance_to};
 use crate::math::{DVec2, DVec3, Random, Ray, Rgb, Span, exp, uniform};
-use crate::medium::{Extinction, Medium, RayProfile};
+use crate::medium::{Extinction, Medium, RayProfile, Scattering};
 use crate::render::distances::{ByTransmittance, EquiAngular};
 
 /// Opacity up to which a uniform medium's transmittance counts as smooth: an optical depth of 4.
@@ -82,7 +82,8 @@ impl<E: Extinction> ScatteringRay<'_, E> {
             let place = self.ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count);
-            sum += weight * scattered(place, random) * self.medium.albedo_at(place);
+            let albedo = self.extinction.albedo_at(self.medium, place);
+            sum += weight * scattered(place, random) * albedo;
         }
         sum
     }
@@ -117,7 +118,7 @@ impl<E: Extinction> ScatteringRay<'_, E> {
                 + far as f64 * by_transmittance.pdf_distance(transmittance, sigma_t);
             if density > 0.0 && sigma_t != Rgb::ZERO {
                 let light = self.light_towards_camera(light, place, random);
-                let albedo = self.medium.albedo_at(place);
+                let albedo = self.extinction.albedo_at(self.medium, place);
                 sum += transmittance * sigma_t * light * albedo / density;
             }
         }
@@ -137,13 +138,14 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         };
         let Some(sample) = light.sample_illumination(place, u) else { return Rgb::ZERO };
         // Travel: from the light (-direction) to the camera (-ray.direction).
-        let phase = self.medium.phase.density(sample.direction.dot(self.ray.direction));
+        let cosine = sample.direction.dot(self.ray.direction);
+        let scattering = self.extinction.scattering_at(self.medium, place);
         let known = self.shadows.and_then(|shadows| shadows.transmittance(index, place));
         let arriving = known.unwrap_or_else(|| {
             let Illumination { direction, distance, .. } = sample;
             transmittance_to(self.medium, self.extinction, place, direction, distance)
         });
-        sample.irradiance * arriving * phase
+        scattering.scatter(sample.irradiance * arriving, 1.0, cosine)
     }
 
     /// The same of an environment: a constant one by the phase function, an image by the phase function or its
@@ -154,15 +156,16 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         place: DVec3,
         random: &mut Random,
     ) -> Rgb {
-        let phase = self.medium.phase;
+        let scattering = self.extinction.scattering_at(self.medium, place);
         let by_image = matches!(environment, Environment::Image(_)) && uniform(random) < 0.5;
         let towards = if by_image {
             environment.sample_direction(DVec2::new(uniform(random), uniform(random))).direction
         } else {
             // The path is reversible: scatter the camera's ray to find where light comes from.
-            phase.sample_direction(self.ray.direction, random)
+            scattering.sample_direction(self.ray.direction, random)
         };
-        let density = phase.density(towards.dot(self.ray.direction));
+        let cosine = towards.dot(self.ray.direction);
+        let density = scattering.pdf(cosine);
         let pdf = match environment {
             Environment::Constant(_) => density,
             Environment::Image(_) => 0.5 * (density + environment.pdf_direction(towards)),
@@ -172,6 +175,6 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let inside = self.medium.bounds.intersect(&out);
         let arriving = inside
             .map_or(Rgb::ONE, |span| self.extinction.estimate_transmittance(&out, span, random));
-        environment.radiance(towards) * arriving * (density / pdf)
+        scattering.scatter(environment.radiance(towards) * arriving, 1.0 / pdf, cosine)
     }
 }

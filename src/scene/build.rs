@@ -1,82 +1,14 @@
-//! From a checked scene file to what the renderer uses: angles in radians, directions of unit length, other
+//! Lights from a checked scene file to what the renderer uses: angles in radians, directions of unit length, other
 //! files read.
 
 use std::path::Path;
 
+use super::environment;
 use super::error::Problem;
-use super::file::{LightSection, MediumSection};
-use super::grid_reader::GridReader;
-use super::grid_use::GridUse;
-use super::hash::FileHashes;
-use super::volume::{self, DensityVolume, VolumeRules};
-use super::{emission, environment};
+use super::file::LightSection;
 use crate::light::{
     DirectionalLight, Environment, Light, PointLight, QuadLight, SphereLight, SpotLight,
 };
-use crate::math::Rgb;
-use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
-
-/// The medium, with `warnings` of what had to be mended in its file, the `grids` of that file that it uses, and the
-/// file's hash.
-pub(super) fn medium(
-    section: &MediumSection,
-    directory: &Path,
-    rules: &VolumeRules,
-    warnings: &mut Vec<String>,
-    grids: &mut Vec<GridUse>,
-    hashes: &mut FileHashes,
-) -> Result<Medium, Problem> {
-    match section {
-        MediumSection::Homogeneous { bounds, sigma_t, albedo, phase } => Ok(Medium {
-            bounds: bounds.bounds(),
-            extinction: homogeneous_extinction(*sigma_t),
-            albedo: *albedo,
-            color: None,
-            phase: phase.phase(),
-            emissivity: None,
-        }),
-        MediumSection::Vdb {
-            file,
-            density,
-            density_scale,
-            sdf_to_fog,
-            precision,
-            albedo,
-            color,
-            phase,
-            emission,
-            transform,
-        } => {
-            let source = volume::open(&directory.join(file), rules)?;
-            hashes.insert("medium.file".into(), source.content_hash());
-            let transform = transform.affine();
-            let mut reader = GridReader { source: &source, transform, rules, warnings, grids };
-            let density = DensityVolume {
-                grid: density.as_deref(),
-                sdf_to_fog: *sdf_to_fog,
-                precision: *precision,
-                density_scale: *density_scale,
-            };
-            let (bounds, extinction) = density.read(&mut reader)?;
-            let color = color.as_deref().map(|name| reader.read_color(name).map(Box::new));
-            let (color, phase) = (color.transpose()?, phase.phase());
-            let medium =
-                Medium { bounds, extinction, albedo: *albedo, color, phase, emissivity: None };
-            match emission {
-                Some(section) => emission::read(section, medium, &mut reader),
-                None => Ok(medium),
-            }
-        }
-    }
-}
-
-fn homogeneous_extinction(sigma_t: Rgb) -> MediumExtinction {
-    if sigma_t == Rgb::splat(sigma_t.x) {
-        MediumExtinction::Uniform(UniformExtinction { sigma_t: sigma_t.x })
-    } else {
-        MediumExtinction::Chromatic(ChromaticExtinction { sigma_t })
-    }
-}
 
 /// The light at key path `key`.
 pub(super) fn light(section: &LightSection, key: &str, directory: &Path) -> Result<Light, Problem> {

@@ -4,6 +4,7 @@ use super::error::Problem;
 use super::file::{EmissionSection, FlameKeys, TemperatureKeys};
 use super::grid_reader::GridReader;
 use super::grid_use::GridRole;
+use super::loaded_grids::GridForm;
 use crate::medium::vdb::VolumeSource;
 use crate::medium::{Emissivity, Flame, Medium, ValueGrid};
 
@@ -21,7 +22,8 @@ pub(super) fn read(
     let flame = section.flame.as_ref().map(|keys| read_flame(keys, reader)).transpose()?;
     if flame.as_ref().is_some_and(|flame| reaches_out(flame, &medium)) {
         reader.warnings.push(format!(
-            "medium.flame: the flames of {} reach beyond the density grid's bounds and are cut off there",
+            "{}.flame: the flames of {} reach beyond the density grid's bounds and are cut off there",
+            reader.key,
             reader.source.name()
         ));
     }
@@ -32,18 +34,19 @@ pub(super) fn read(
     let is_dark = !glows && section.emission_scale > 0.0;
     match hottest {
         Some(kelvin) if kelvin < DARK_HEAT => reader.warnings.push(format!(
-            "medium.temperature: no place is hotter than {kelvin:.0} K, and none glows; \
-             give temperature_scale (1 to 3 thousand for a grid of 0 to 1)"
+            "{}.temperature: no place is hotter than {kelvin:.0} K, and none glows; \
+             give temperature_scale (1 to 3 thousand for a grid of 0 to 1)",
+            reader.key
         )),
         Some(_) if is_dark => reader.warnings.push(
             "the medium does not glow: where it is hot it absorbs nothing; lower its albedo, or \
              name a flame grid"
                 .into(),
         ),
-        None if is_dark => reader.warnings.push(
-            "medium.flame: nothing burns: the grid is 0 wherever the medium is, or flame_color is 0"
-                .into(),
-        ),
+        None if is_dark => reader.warnings.push(format!(
+            "{}.flame: nothing burns: the grid is 0 wherever the medium is, or flame_color is 0",
+            reader.key
+        )),
         _ => {}
     }
     Ok(medium)
@@ -56,11 +59,16 @@ fn read_temperature(keys: &TemperatureKeys, reader: &mut GridReader) -> Result<V
         cold if cold.is_finite() => cold.max(0.0),
         other => other,
     };
-    reader.read_values(GridRole::Temperature, &keys.temperature, kelvin)
+    reader.read_values(
+        GridRole::Temperature,
+        &keys.temperature,
+        GridForm::Temperature { offset, scale },
+        kelvin,
+    )
 }
 
 fn read_flame(keys: &FlameKeys, reader: &mut GridReader) -> Result<Flame, Problem> {
-    let grid = reader.read_values(GridRole::Flame, &keys.flame, |value| value)?;
+    let grid = reader.read_values(GridRole::Flame, &keys.flame, GridForm::Flame, |value| value)?;
     Ok(Flame { grid, color: keys.flame_color })
 }
 

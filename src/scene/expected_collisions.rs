@@ -6,7 +6,7 @@
 
 use super::Scene;
 use crate::math::{DVec3, Ray, Span, max_channel};
-use crate::medium::{Bounds, Extinction, GridExtinction, MediumExtinction, Parallelepiped};
+use crate::medium::{Bounds, Extinction, MediumExtinction, Parallelepiped};
 
 /// Rays through a grid from each of three sides, along either axis of the side.
 const RAYS_PER_AXIS: usize = 8;
@@ -40,8 +40,12 @@ impl Chords {
                 Self::mean(bounds, max_channel(chromatic.sigma_t))
             }
             (MediumExtinction::Grid(grid), Bounds::Parallelepiped(shape)) => {
-                Self::through(grid, shape)
+                Self::through(&**grid, shape)
             }
+            (MediumExtinction::Several(volumes), bounds) => match bounds.parallelepiped() {
+                Some(shape) => Self::through(&**volumes, &shape),
+                None => Self::mean(bounds, 0.0),
+            },
             (MediumExtinction::Grid(grid), _) => Self::mean(bounds, grid.max_sigma_t()),
         }
     }
@@ -52,15 +56,16 @@ impl Chords {
         Self { first_collision: 1.0 - (-optical_depth).exp(), optical_depth }
     }
 
-    /// Rays parallel to the edges of a grid.
-    fn through(grid: &GridExtinction, shape: &Parallelepiped) -> Self {
+    /// Rays parallel to the edges of a box about what varies.
+    fn through(extinction: &impl Extinction, shape: &Parallelepiped) -> Self {
         let centers = || (0..RAYS_PER_AXIS).map(|cell| (cell as f64 + 0.5) / RAYS_PER_AXIS as f64);
         let (mut collisions, mut depths) = (0.0, 0.0);
         for axis in 0..3 {
             let [along, u, v] = [0, 1, 2].map(|turn| shape.edges()[(axis + turn) % 3]);
             for (a, b) in centers().flat_map(|a| centers().map(move |b| (a, b))) {
                 let ray = Ray::new(shape.corner() + a * u + b * v, along.normalize());
-                let depth = max_channel(grid.optical_depth(&ray, Span::new(0.0, along.length())));
+                let depth =
+                    max_channel(extinction.optical_depth(&ray, Span::new(0.0, along.length())));
                 let collides = 1.0 - (-depth).exp();
                 collisions += collides;
                 depths += collides * depth;

@@ -23,6 +23,10 @@ pub struct GridUse {
     pub role: GridRole,
     /// Its name, `density[1]` for the second grid named so.
     pub name: String,
+    /// The name of its file, without folders.
+    pub file: String,
+    /// Volumes that use it, from the same memory.
+    pub volumes: usize,
     /// Memory it is held in \[bytes\].
     pub memory_bytes: u64,
 }
@@ -36,11 +40,6 @@ impl GridRole {
             Self::Temperature => "temperature",
             Self::Flame => "flame",
         }
-    }
-
-    /// The key that names the grid.
-    pub(super) fn key(self) -> String {
-        format!("medium.{}", self.name())
     }
 
     /// What its values are.

@@ -43,17 +43,19 @@ pub(super) fn scene_hash(
 impl SceneFile {
     /// The files that the scene names, each with the path of its key.
     fn named_files(&mut self) -> impl Iterator<Item = (String, &mut PathBuf)> {
-        let medium = match &mut self.medium {
-            MediumSection::Vdb { file, .. } => Some(("medium.file".into(), file)),
-            MediumSection::Homogeneous { .. } => None,
-        };
+        let is_one = self.media.len() == 1;
+        let media = self.media.iter_mut().enumerate().filter_map(move |(index, medium)| {
+            let MediumSection::Vdb { file, .. } = medium else { return None };
+            let key = if is_one { "medium.file".into() } else { format!("medium[{index}].file") };
+            Some((key, file))
+        });
         let lights = self.lights.iter_mut().enumerate().filter_map(|(index, light)| match light {
             LightSection::ImageEnvironment { file, .. } => {
                 Some((format!("light[{index}].file"), file))
             }
             _ => None,
         });
-        medium.into_iter().chain(lights)
+        media.chain(lights)
     }
 }
 

@@ -16,6 +16,8 @@ mod grid_reader;
 mod grid_use;
 mod hash;
 mod light_counts;
+mod loaded_grids;
+mod media;
 mod overrides;
 mod plan;
 mod tree;
@@ -38,10 +40,11 @@ use std::path::Path;
 use crate::camera::Camera;
 use crate::light::Light;
 use crate::math::Rgb;
-use crate::medium::{Medium, MediumExtinction};
+use crate::medium::Medium;
 use crate::render::Gather;
 use error::Problem;
 use expected_collisions::expected_collisions;
+use media::MediaNotes;
 use volume::VolumeRules;
 
 /// Expected collisions of a photon from which paths are bounced.
@@ -91,45 +94,58 @@ impl Scene {
         let directory = path.parent().unwrap_or(Path::new(""));
         let scene = Self::build(&file, directory, &overrides.volume_rules())
             .map_err(|problem| problem.locate(path, &tree))?;
-        Ok(Self { is_photon_count_given: file::has_key(&tree, "photons", "count"), ..scene })
+        let mut warnings = scene.warnings;
+        if file::asks_for_lattice(&tree) && scene.medium.shared_phase().is_none() {
+            let text = "render.gather: volumes with different phase functions have no lattice; \
+                        light is gathered from the photon map";
+            warnings.push(text.into());
+        }
+        let is_photon_count_given = file::has_key(&tree, "photons", "count");
+        Ok(Self { is_photon_count_given, warnings, ..scene })
     }
 
     /// Whether all light and all scattering is the same in the three channels.
     pub fn is_grey(&self) -> bool {
         let grey = |color: Rgb| color.x == color.y && color.y == color.z;
-        let medium = &self.medium;
-        grey(medium.albedo)
-            && medium.color.is_none()
-            && medium.emissivity.is_none()
-            && !matches!(medium.extinction, MediumExtinction::Chromatic(_))
-            && self.lights.iter().all(|light| light.color().is_some_and(grey))
+        self.medium.is_grey() && self.lights.iter().all(|light| light.color().is_some_and(grey))
     }
 
     fn build(file: &SceneFile, directory: &Path, rules: &VolumeRules) -> Result<Self, Problem> {
-        let (mut warnings, mut grids) = (Vec::new(), Vec::new());
-        let mut hashes = hash::FileHashes::new();
-        let medium =
-            build::medium(&file.medium, directory, rules, &mut warnings, &mut grids, &mut hashes)?;
+        let mut notes = MediaNotes::default();
+        let medium = media::read(&file.media, directory, rules, &mut notes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
             .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
             .collect::<Result<_, _>>()?;
         let mut scene = Self {
             camera: file.camera.camera()?,
-            medium,
             lights,
             photons: file.photons,
             estimate: file.estimate,
-            render: file.render,
-            hash: hash::scene_hash(file, directory, &hashes)?,
-            grids,
+            render: RenderSettings {
+                gather: gather_for(&medium, file.render.gather),
+                ..file.render
+            },
+            hash: hash::scene_hash(file, directory, &notes.hashes)?,
+            medium,
+            grids: notes.grids,
             is_photon_count_given: true,
-            warnings,
+            warnings: notes.warnings,
         };
         // Where light is scattered many times it falls off within a mean free path of the medium's faces, less than a cell.
-        if scene.render.is_gather_open && expected_collisions(&scene) >= MANY_COLLISIONS {
+        let is_open = scene.render.is_gather_open && scene.render.gather == Gather::Lattice;
+        if is_open && expected_collisions(&scene) >= MANY_COLLISIONS {
             scene.render.gather = Gather::Bounce;
         }
         Ok(scene)
+    }
+}
+
+/// How light is gathered in a medium: cells of a lattice hold light scattered by one phase function, and where volumes
+/// differ in theirs photons are asked instead.
+fn gather_for(medium: &Medium, wanted: Gather) -> Gather {
+    match medium.shared_phase() {
+        Some(_) => wanted,
+        None => Gather::Knn,
     }
 }

@@ -31,7 +31,7 @@ pub struct Overrides {
     pub samples_per_pixel: Option<u64>,
     /// `render.photons_only`
     pub photons_only: Option<bool>,
-    /// `medium.sdf_to_fog`
+    /// `medium.sdf_to_fog`, of every volume from a file.
     pub sdf_to_fog: Option<bool>,
     /// Memory that reading a volume may take \[bytes\], instead of the default of [`Limits`]; not a value of the file.
     pub max_volume_memory: Option<u64>,
@@ -65,11 +65,14 @@ impl Overrides {
         set("render", "filter", self.filter.clone().map(Value::Text));
         set("render", "samples_per_pixel", self.samples_per_pixel.map(integer));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
-        set("medium", "sdf_to_fog", self.sdf_to_fog.map(Value::Boolean));
         let resolution = self.resolution.map(|sides| {
             let item = |side| Node { origin: Origin::Override, value: integer(side) };
             Value::List(sides.map(item).into())
         });
         set("camera", "resolution", resolution);
+        if let Some(sdf_to_fog) = self.sdf_to_fog {
+            let is_volume = |medium: &Node| medium.text("kind") == Some("vdb");
+            tree.set_in_each("medium", "sdf_to_fog", Value::Boolean(sdf_to_fog), is_volume);
+        }
     }
 }

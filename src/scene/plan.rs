@@ -10,7 +10,7 @@ use super::file::emission_word;
 use super::grid_use::{GridRole, GridUse};
 use super::light_counts::LightCounts;
 use crate::math::Rgb;
-use crate::medium::{MediumExtinction, Phase};
+use crate::medium::{Medium, MediumExtinction};
 use crate::render::Gather;
 
 /// What a scene needs; printed before a render and part of its report.
@@ -20,6 +20,12 @@ pub struct Plan {
     pub medium: MediumKind,
     /// Whether scattered light goes all ways alike.
     pub isotropic: bool,
+    /// Mean cosine of the angle by which it is scattered; `None` where volumes differ in that: then there is no lattice.
+    pub mean_cosine: Option<f64>,
+    /// Volumes that make up the medium.
+    pub volumes: usize,
+    /// Those of them that are density grids.
+    pub grid_volumes: usize,
     /// Whether sigma_t or the albedo differs between the channels.
     pub chromatic: bool,
     /// The grids used, in the order in which they were read.
@@ -52,6 +58,8 @@ pub enum MediumKind {
     Homogeneous,
     /// From a density grid.
     Grid,
+    /// The sum of several volumes.
+    Several,
 }
 
 /// A photon and its place in the tree \[bytes\].
@@ -61,17 +69,32 @@ impl Plan {
     /// The plan of a scene.
     pub fn of(scene: &Scene) -> Self {
         let medium = &scene.medium;
-        let is_grid = matches!(medium.extinction, MediumExtinction::Grid(_));
+        let volumes = match &medium.extinction {
+            MediumExtinction::Several(volumes) => volumes.media(),
+            _ => std::slice::from_ref(medium),
+        };
+        let is_grid = |volume: &&Medium| matches!(volume.extinction, MediumExtinction::Grid(_));
+        let grid_volumes = volumes.iter().filter(is_grid).count();
+        let is_chromatic = |volume: &Medium| {
+            matches!(volume.extinction, MediumExtinction::Chromatic(_))
+                || volume.albedo != Rgb::splat(volume.albedo.x)
+                || volume.color.is_some()
+        };
         let expected_stored = (scene.photons.count as f64 * expected_collisions(scene)) as u64;
         Self {
-            medium: if is_grid { MediumKind::Grid } else { MediumKind::Homogeneous },
-            isotropic: medium.phase == Phase::Isotropic,
-            chromatic: matches!(medium.extinction, MediumExtinction::Chromatic(_))
-                || medium.albedo != Rgb::splat(medium.albedo.x)
-                || medium.color.is_some(),
+            medium: match (volumes.len(), grid_volumes) {
+                (1, 0) => MediumKind::Homogeneous,
+                (1, _) => MediumKind::Grid,
+                _ => MediumKind::Several,
+            },
+            isotropic: medium.is_isotropic(),
+            mean_cosine: medium.shared_phase().map(|phase| phase.mean_cosine()),
+            volumes: volumes.len(),
+            grid_volumes,
+            chromatic: volumes.iter().any(is_chromatic),
             grids: scene.grids.clone(),
             lights: LightCounts::of(&scene.lights),
-            majorants: is_grid,
+            majorants: grid_volumes > 0,
             photons: scene.photons.count,
             emission: emission_word(scene.photons.emission),
             gather: scene.render.gather,
@@ -87,21 +110,35 @@ impl Plan {
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let glows = |grid: &GridUse| matches!(grid.role, GridRole::Temperature | GridRole::Flame);
-        let (medium, needs) = match self.medium {
-            MediumKind::Homogeneous => ("homogeneous", "no grid, no majorants, no emission"),
-            MediumKind::Grid if self.grids.iter().any(glows) => {
-                ("density grid", "majorants, emission")
+        let medium = match (self.medium, self.grid_volumes) {
+            (MediumKind::Homogeneous, _) => "homogeneous".into(),
+            (MediumKind::Grid, _) => "density grid".into(),
+            (MediumKind::Several, grids) => {
+                format!("{} volumes, {grids} from density grids", self.volumes)
             }
-            MediumKind::Grid => ("density grid", "majorants, no emission"),
         };
-        let phase = if self.isotropic { "isotropic" } else { "anisotropic" };
+        let needs = match (self.majorants, self.grids.iter().any(glows)) {
+            (true, true) => "majorants, emission",
+            (true, false) => "majorants, no emission",
+            (false, true) => "emission",
+            (false, false) => "no grid, no majorants, no emission",
+        };
+        let phase = match (self.isotropic, self.mean_cosine) {
+            (true, _) => "isotropic".into(),
+            (false, Some(cosine)) => format!("anisotropic (mean cosine {cosine:.2})"),
+            (false, None) => "each with its own phase function".into(),
+        };
         let color = if self.chromatic { ", chromatic" } else { "" };
         let lights = self.lights.to_string();
         let lights = if lights.is_empty() { "no light but its own" } else { &lights };
         writeln!(f, "{medium}, {phase}{color}, {lights}: {needs}")?;
         for grid in &self.grids {
             let megabytes = grid.memory_bytes.div_ceil(1_000_000);
-            writeln!(f, "{} from grid {:?}, {megabytes} MB", grid.role.name(), grid.name)?;
+            write!(f, "{} from grid {:?}", grid.role.name(), grid.name)?;
+            if self.volumes > 1 {
+                write!(f, " of {}, used {}", grid.file, times(grid.volumes))?;
+            }
+            writeln!(f, ", {megabytes} MB")?;
         }
         write!(f, "{} photons a pass ({}), ", self.photons, self.emission)?;
         match self.gather {
@@ -115,6 +152,14 @@ impl fmt::Display for Plan {
                 self.expected_stored,
                 self.photon_memory_bytes.div_ceil(1_000_000),
             ),
+        }?;
+        match self.mean_cosine {
+            Some(_) => Ok(()),
+            None => write!(f, "; no lattice, as volumes differ in their phase functions"),
         }
     }
+}
+
+fn times(count: usize) -> String {
+    if count == 1 { "once".into() } else { format!("{count} times") }
 }

@@ -1,14 +1,16 @@
 //! Density volumes of a scene: from a VDB file to extinction in the scene's world.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::error::Problem;
 use super::grid_reader::GridReader;
 use super::grid_use::GridRole;
+use super::loaded_grids::{GridForm, LoadedGrid};
 use crate::math::DAffine3;
 use crate::medium::grid::{BrickPrecision, DensityGrid};
 use crate::medium::vdb::{
-    GridSummary, Limits, SparseGrid, VdbError, VdbFile, VolumeSource, find_density,
+    GridSummary, Limits, SparseGrid, VdbFile, VolumeSource, find_density,
     find_density_or_level_set, fog_of_level_set,
 };
 use crate::medium::{Bounds, GridExtinction, MediumExtinction, UniformExtinction};
@@ -34,10 +36,10 @@ pub(super) struct DensityVolume<'a> {
     pub density_scale: f64,
 }
 
-/// Opens the file of a volume.
-pub(super) fn open(file: &Path, rules: &VolumeRules) -> Result<VdbFile, Problem> {
+/// Opens the file of the volume at key path `key`.
+pub(super) fn open(file: &Path, key: &str, rules: &VolumeRules) -> Result<VdbFile, Problem> {
     VdbFile::open_within(file, &rules.limits)
-        .map_err(|error| Problem::new("medium.file", error.to_string()))
+        .map_err(|error| Problem::new(format!("{key}.file"), error.to_string()))
 }
 
 impl DensityVolume<'_> {
@@ -47,12 +49,19 @@ impl DensityVolume<'_> {
         reader: &mut GridReader,
     ) -> Result<(Bounds, MediumExtinction), Problem> {
         let source = reader.source;
-        let index = self.find(source)?;
+        let index = self.find(reader)?;
+        let Self { sdf_to_fog, precision, .. } = *self;
+        let key = reader.grid_key(index, GridForm::Density { sdf_to_fog, precision });
+        if let Some((LoadedGrid::Density(grid), index_to_file)) = reader.find_loaded(key) {
+            return self.place(grid, index_to_file, reader);
+        }
         let summary = &source.grids()[index];
         let unique_name = summary.unique_name.as_str();
         let name = reader.shown(unique_name);
         let limits = &reader.rules.limits;
-        let stored = source.load_scalar(index, limits).map_err(|error| in_grid(&error))?;
+        let stored = source
+            .load_scalar(index, limits)
+            .map_err(|error| reader.problem(GridRole::Density, error.to_string()))?;
         let mut sparse = self.density(stored, summary, &name, reader.warnings);
         reader.mend(&mut sparse, GridRole::Density, unique_name)?;
         if let Some(damage) = source.damage() {
@@ -60,24 +69,47 @@ impl DensityVolume<'_> {
             reader.warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
         }
 
-        let index_to_world = reader.transform * sparse.index_to_world;
+        let index_to_file = sparse.index_to_world;
         let limits = source.limits_beside(&reader.rules.limits);
         let grid = DensityGrid::build(&sparse, self.precision, &limits).map_err(|error| {
-            Problem::new("medium.density", format!("{name} cannot be used: {error}"))
+            reader.problem(GridRole::Density, format!("{name} cannot be used: {error}"))
         })?;
         drop(sparse);
         if grid.statistics().max_density <= 0.0 {
             let text = format!("{name} is empty: no density is above 0");
-            return Err(Problem::new("medium.density", text));
+            return Err(reader.problem(GridRole::Density, text));
         }
-        reader.note(GridRole::Density, unique_name, grid.statistics().memory_bytes);
-        place(grid, index_to_world, self.density_scale)
+        let grid = Arc::new(grid);
+        let bytes = grid.statistics().memory_bytes;
+        let loaded = LoadedGrid::Density(Arc::clone(&grid));
+        reader.note(GridRole::Density, bytes, key, loaded, index_to_file);
+        self.place(grid, index_to_file, reader)
     }
 
-    fn find(&self, source: &VdbFile) -> Result<usize, Problem> {
+    /// The grid in the world. At scale 0 all that is left of it is its bounds.
+    fn place(
+        &self,
+        grid: Arc<DensityGrid>,
+        index_to_file: DAffine3,
+        reader: &GridReader,
+    ) -> Result<(Bounds, MediumExtinction), Problem> {
+        let is_transparent = self.density_scale == 0.0;
+        let scale = if is_transparent { 1.0 } else { self.density_scale };
+        let extinction = GridExtinction::new(grid, reader.transform * index_to_file, scale);
+        let bounds = extinction.bounds().ok_or_else(|| {
+            let text = "must be invertible and finite together with the file's own transform";
+            Problem::new(format!("{}.transform", reader.key), text)
+        })?;
+        if is_transparent {
+            return Ok((bounds, MediumExtinction::Uniform(UniformExtinction { sigma_t: 0.0 })));
+        }
+        Ok((bounds, MediumExtinction::Grid(Box::new(extinction))))
+    }
+
+    fn find(&self, reader: &GridReader) -> Result<usize, Problem> {
         let find = if self.sdf_to_fog { find_density_or_level_set } else { find_density };
-        find(source, self.grid.unwrap_or("density"), self.grid.is_some())
-            .map_err(|error| in_grid(&error))
+        find(reader.source, self.grid.unwrap_or("density"), self.grid.is_some())
+            .map_err(|error| reader.problem(GridRole::Density, error.to_string()))
     }
 
     /// The grid's densities: what it holds, or the fog inside it.
@@ -99,27 +131,4 @@ impl DensityVolume<'_> {
         warnings.push(format!("{name} is no level set and is used as it is"));
         stored
     }
-}
-
-fn in_grid(error: &VdbError) -> Problem {
-    Problem::new("medium.density", error.to_string())
-}
-
-/// A grid in the world. At scale 0 all that is left of it is its bounds.
-fn place(
-    grid: DensityGrid,
-    index_to_world: DAffine3,
-    density_scale: f64,
-) -> Result<(Bounds, MediumExtinction), Problem> {
-    let is_transparent = density_scale == 0.0;
-    let scale = if is_transparent { 1.0 } else { density_scale };
-    let extinction = GridExtinction::new(grid, index_to_world, scale);
-    let bounds = extinction.bounds().ok_or_else(|| {
-        let text = "must be invertible and finite together with the file's own transform";
-        Problem::new("medium.transform", text)
-    })?;
-    if is_transparent {
-        return Ok((bounds, MediumExtinction::Uniform(UniformExtinction { sigma_t: 0.0 })));
-    }
-    Ok((bounds, MediumExtinction::Grid(Box::new(extinction))))
 }

@@ -21,7 +21,7 @@ impl MapFrame {
                 let sigma_t = match &medium.extinction {
                     MediumExtinction::Uniform(uniform) => uniform.sigma_t,
                     MediumExtinction::Chromatic(chromatic) => chromatic.sigma_t.min_element(),
-                    MediumExtinction::Grid(_) => 1.0,
+                    MediumExtinction::Grid(_) | MediumExtinction::Several(_) => 1.0,
                 };
                 let unit = if sigma_t > 0.0 { 1.0 / sigma_t } else { 1.0 };
                 Self { origin: lit_from.unwrap_or(DVec3::ZERO), unit }

@@ -93,7 +93,8 @@ impl<'a, E: Extinction, K: Keep> Path<'a, E, K> {
                 self.balance.truncated += power;
                 return;
             }
-            let scattered = power * self.medium.albedo_at(ray.origin);
+            let struck = self.extinction.struck(self.medium, ray.origin, &mut random);
+            let scattered = power * struck.albedo_at(ray.origin);
             let survival = (max_channel(scattered) / max_channel(power)).min(1.0);
             if survival < 1.0 && uniform(&mut random) >= survival {
                 self.balance.absorbed += power;
@@ -102,7 +103,7 @@ impl<'a, E: Extinction, K: Keep> Path<'a, E, K> {
             let survivor = scattered / survival;
             self.balance.absorbed += power - survivor;
             power = survivor;
-            ray.direction = self.medium.phase.sample_direction(ray.direction, &mut random);
+            ray.direction = struck.phase.sample_direction(ray.direction, &mut random);
         }
         self.balance.escaped += power;
     }

@@ -119,6 +119,7 @@ pub(super) fn trace(scene: &Scene) -> TracedPhotons {
         MediumExtinction::Uniform(extinction) => trace_through(scene, extinction),
         MediumExtinction::Chromatic(extinction) => trace_through(scene, extinction),
         MediumExtinction::Grid(extinction) => trace_through(scene, &**extinction),
+        MediumExtinction::Several(volumes) => trace_through(scene, &**volumes),
     }
 }
 

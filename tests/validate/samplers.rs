@@ -15,8 +15,8 @@ use photonvdb::math::{
 };
 use photonvdb::medium::vdb::{Limits, SparseGrid};
 use photonvdb::medium::{
-    BoostedQuantile, Bounds, ChromaticExtinction, Emissivity, Extinction, Flame, Flight, Phase,
-    RayProfile, UniformExtinction, ValueGrid,
+    BoostedQuantile, Bounds, ChromaticExtinction, Emissivity, Extinction, Flame, Flight, Lobe,
+    Phase, RayProfile, UniformExtinction, ValueGrid,
 };
 
 use crate::transport_support::*;
@@ -91,6 +91,57 @@ fn phase_functions() {
         assert_uniform(cosines.collect(), &format!("cosine, g {g}"));
         let turns = directions.iter().map(|d| azimuth(*d, axis));
         assert_uniform(turns.collect(), &format!("azimuth, g {g}"));
+    }
+}
+
+/// Cosines of every other phase function in bins ever narrower towards both ends, against the density over each.
+#[test]
+fn phase_functions_of_lobes() {
+    let axis = DVec3::new(0.48, -0.6, 0.64);
+    let mut phases = vec![
+        Phase::draine(0.0, 1.0),
+        Phase::draine(1e-6, 40.0),
+        Phase::draine(0.6, 1e-7),
+        Phase::draine(-0.99, 1.0),
+        Phase::draine(0.99, 30.0),
+        Phase::draine(0.5, 1e12),
+    ];
+    for (g1, g2, weight) in [(0.8, -0.4, 0.9), (0.99, -0.99, 0.5), (0.5, 0.0, 1e-3)] {
+        let [first, second] = [g1, g2].map(Lobe::henyey_greenstein);
+        phases.push(Phase::two_lobes(first, second, weight));
+    }
+    phases.extend([5.0, 12.0, 20.0, 50.0].map(Phase::droplets));
+    // 1 - |cos| at 40 edges: the diffraction peak of large droplets is 1e-5 wide.
+    let rest = |i: f64| (1.0 - (i / 20.0).abs()).powi(4);
+    let cosine = |i: f64| if i < 0.0 { rest(i) - 1.0 } else { 1.0 - rest(i) };
+    for (case, phase) in phases.into_iter().enumerate() {
+        let mut random = random(60 + case as u64);
+        let mut counts = vec![0.0; 40];
+        let mut turns = Vec::new();
+        for _ in 0..4 * COUNT {
+            let direction = phase.sample_direction(axis, &mut random);
+            let cosine = direction.dot(axis).clamp(-1.0, 1.0);
+            let from_end = (1.0 - cosine.abs()).powf(0.25);
+            let bin = 20.0 + cosine.signum() * 20.0 * (1.0 - from_end);
+            counts[(bin as usize).min(39)] += 1.0;
+            turns.push(azimuth(direction, axis));
+        }
+        let share = |i: i32| {
+            let steps = 400;
+            let node = |j: i32| f64::from(i) + f64::from(j) / f64::from(steps);
+            let piece = |j: i32| {
+                let (low, high) = (cosine(node(j)), cosine(node(j + 1)));
+                let middle = phase.density(0.5 * (low + high));
+                let ends = phase.density(low) + phase.density(high);
+                (high - low) / 6.0 * (ends + 4.0 * middle)
+            };
+            2.0 * PI * (0..steps).map(piece).sum::<f64>()
+        };
+        let probabilities: Vec<f64> = (-20..20).map(share).collect();
+        let total: f64 = probabilities.iter().sum();
+        assert!((total - 1.0).abs() < 1e-5, "{phase:?}: {total}");
+        assert_counts(&counts, &probabilities, &format!("cosine, {phase:?}"));
+        assert_uniform(turns, &format!("azimuth, {phase:?}"));
     }
 }
 

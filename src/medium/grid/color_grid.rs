@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// Linear RGB by place, no channel below 0.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ColorGrid {
     channels: [ValueGrid; 3],
 }
@@ -34,6 +34,13 @@ impl ColorGrid {
             return Ok(None);
         };
         Ok(Some((Self { channels: [red, green, blue] }, mended)))
+    }
+
+    /// The same colours at another place, in the same memory; `None` if the transform has no inverse.
+    pub fn moved(&self, index_to_world: DAffine3) -> Option<Self> {
+        let [red, green, blue] = &self.channels;
+        let moved = |channel: &ValueGrid| channel.moved(index_to_world);
+        Some(Self { channels: [moved(red)?, moved(green)?, moved(blue)?] })
     }
 
     /// The colour at a place in world space.

@@ -1,13 +1,13 @@
 //! A density grid placed in the world.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Arc};
 
 use super::{DensityGrid, block_walk::LocalRay};
 use crate::{
     math::{Ball, DAffine3, DMat3, DVec3, Random, Ray, Rgb, Span},
     medium::{
-        BallMoments, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, Parallelepiped,
-        ProfileKnot, RayProfile,
+        BallMoments, BoostedFlight, BoostedQuantile, Bounds, Extinction, Flight, Medium,
+        Parallelepiped, Phase, ProfileKnot, RayProfile,
     },
 };
 
@@ -17,7 +17,8 @@ const OPAQUE_DEPTH: f64 = 64.0;
 /// Extinction of a density grid in world space, the same in all channels.
 #[derive(Debug)]
 pub struct GridExtinction {
-    grid: DensityGrid,
+    /// Shared with other places of the same grid.
+    grid: Arc<DensityGrid>,
     density_scale: f64,
     /// `None` where there is no extinction.
     placement: Option<Placement>,
@@ -25,7 +26,7 @@ pub struct GridExtinction {
 
 /// The map from world to the grid's local coordinates, taken about the grid's centre so that a grid far from
 /// the world's origin, or of tiny voxels, keeps its digits.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Placement {
     pub(super) bounds: Parallelepiped,
     world_center: DVec3,
@@ -39,7 +40,12 @@ impl GridExtinction {
     ///
     /// There is no extinction if the transform has no inverse, or the scale is not above 0. A scale that would
     /// make the largest sigma_t infinite is lowered.
-    pub fn new(grid: DensityGrid, index_to_world: DAffine3, density_scale: f64) -> Self {
+    pub fn new(
+        grid: impl Into<Arc<DensityGrid>>,
+        index_to_world: DAffine3,
+        density_scale: f64,
+    ) -> Self {
+        let grid = grid.into();
         let max_density = f64::from(grid.statistics().max_density);
         // NaN becomes 0.
         let density_scale = density_scale.max(0.0).min(f64::MAX / max_density.max(1.0));
@@ -70,6 +76,11 @@ impl GridExtinction {
 
     /// The densities.
     pub fn grid(&self) -> &DensityGrid {
+        &self.grid
+    }
+
+    /// The densities, to be placed elsewhere too.
+    pub fn shared_grid(&self) -> &Arc<DensityGrid> {
         &self.grid
     }
 
@@ -115,6 +126,8 @@ impl Placement {
 }
 
 impl Extinction for GridExtinction {
+    type Scattering = Phase;
+
     const IS_UNIFORM: bool = false;
 
     fn voxel_size(&self) -> Option<f64> {
@@ -131,6 +144,11 @@ impl Extinction for GridExtinction {
             }
             None => Rgb::ZERO,
         }
+    }
+
+    #[inline]
+    fn scattering_at(&self, medium: &Medium, _position: DVec3) -> Phase {
+        medium.phase
     }
 
     fn optical_depth(&self, ray: &Ray, span: Span) -> Rgb {
@@ -184,11 +202,7 @@ impl Extinction for GridExtinction {
         if !is_known {
             self.profile(ray, span, profile);
         }
-        let opacity = -(-profile.optical_depth(span.end).x).exp_m1();
-        boosted.flight(opacity, |quantile| {
-            let distance = profile.distance_at(-(-quantile).ln_1p(), 0);
-            flight_to((distance < span.end).then_some(distance))
-        })
+        boosted.flight_along(profile)
     }
 
     fn profile(&self, ray: &Ray, span: Span, profile: &mut RayProfile) {

@@ -1,6 +1,8 @@
 //! A grid of numbers that are not below 0, placed in the world and read at points: temperatures, flames, a channel of
 //! colours. Trilinear between voxels, as densities are; beyond its active voxels the grid's background holds.
 
+use std::sync::Arc;
+
 use super::{BrickPrecision, DensityGrid, DensityGridError, extinction::Placement};
 use crate::{
     math::{DAffine3, DVec3},
@@ -8,9 +10,10 @@ use crate::{
 };
 
 /// Numbers by place.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ValueGrid {
-    grid: DensityGrid,
+    /// Shared with other places of the same grid.
+    grid: Arc<DensityGrid>,
     placement: Placement,
     background: f64,
     voxel_size: f64,
@@ -28,13 +31,22 @@ impl ValueGrid {
         limits: &Limits,
     ) -> Result<Option<Self>, DensityGridError> {
         let grid = DensityGrid::build(sparse, BrickPrecision::Single, limits)?;
-        let Some(placement) = Placement::new(&grid, &index_to_world) else { return Ok(None) };
         let background = f64::from(sparse.background);
         let background = if background.is_finite() { background.max(0.0) } else { 0.0 };
+        Ok(Self::place(Arc::new(grid), background, &index_to_world))
+    }
+
+    /// The same values at another place, in the same memory; `None` if the transform has no inverse.
+    pub fn moved(&self, index_to_world: DAffine3) -> Option<Self> {
+        Self::place(Arc::clone(&self.grid), self.background, &index_to_world)
+    }
+
+    fn place(grid: Arc<DensityGrid>, background: f64, index_to_world: &DAffine3) -> Option<Self> {
+        let placement = Placement::new(&grid, index_to_world)?;
         let axes = index_to_world.matrix3;
         let edges = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
         let voxel_size = edges.into_iter().fold(f64::INFINITY, f64::min);
-        Ok(Some(Self { grid, placement, background, voxel_size }))
+        Some(Self { grid, placement, background, voxel_size })
     }
 
     /// The value at a place in world space.

@@ -14,6 +14,11 @@ use crate::medium::grid::BrickPrecision;
 use crate::scene::error::Problem;
 
 /// `[medium]`: what scatters and absorbs; one of two kinds. All it is surrounded by is empty space.
+///
+/// Several volumes are as many `[[medium]]` (in JSON, a list), of either kind. They may overlap: there sigma_t and emission add up, and
+/// each collision is with one of the volumes, by its share of sigma_t, with that volume's albedo and phase function. Each needs bounds, and one
+/// sigma_t for all channels. Grids that several of them name are in memory once, whatever their transforms. Where volumes scatter by different
+/// phase functions light is gathered from the photon map, whatever `render.gather` says; every ray looks at every volume.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 #[allow(missing_docs)]
@@ -90,7 +95,28 @@ fn serialize_precision<S: Serializer>(
 }
 
 impl MediumSection {
-    pub(super) fn read(table: &Table) -> Result<Self, Problem> {
+    /// Reads all media of a scene: a table, or a list of them.
+    pub(super) fn read_all(root: &Table) -> Result<Vec<Self>, Problem> {
+        let tables = root.section_or_sections("medium")?;
+        root.ensure("medium", !tables.is_empty(), "a scene needs a medium")?;
+        let media: Vec<Self> = tables.iter().map(Self::read).collect::<Result<_, _>>()?;
+        if media.len() > 1 {
+            tables.iter().zip(&media).try_for_each(|(table, medium)| medium.check_shared(table))?;
+        }
+        Ok(media)
+    }
+
+    /// What one of several volumes must be.
+    fn check_shared(&self, table: &Table) -> Result<(), Problem> {
+        let Self::Homogeneous { bounds, sigma_t, .. } = self else { return Ok(()) };
+        let is_bounded = *bounds != BoundsSection::Infinite;
+        table.ensure("bounds", is_bounded, "one of several media needs a box or a ball")?;
+        let is_grey = *sigma_t == Rgb::splat(sigma_t.x);
+        let rule = "must be one number where there are several media; the albedo may have colour";
+        table.ensure("sigma_t", is_grey, rule)
+    }
+
+    fn read(table: &Table) -> Result<Self, Problem> {
         let vdb_keys = [&VDB_KEYS[..], &EmissionSection::KEYS].concat();
         let kinds = [("homogeneous", &HOMOGENEOUS_KEYS[..]), ("vdb", &vdb_keys[..])];
         let kind = table.require_choice("kind", &kinds.map(|(kind, _)| (kind, kind)))?;

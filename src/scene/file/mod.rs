@@ -29,7 +29,7 @@ pub use transform::TransformSection;
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::error::{Problem, SceneError};
 use super::overrides::Overrides;
@@ -41,7 +41,7 @@ use table::Table;
 /// | section | default | meaning |
 /// |---|---|---|
 /// | `[camera]` | required | where the image is taken from: [`CameraSection`] |
-/// | `[medium]` | required | what fills the scene: [`MediumSection`] |
+/// | `[medium]` | required | what fills the scene: [`MediumSection`]; `[[medium]]`, more than once, for several volumes |
 /// | `[[light]]` | at least one, unless the medium glows | what lights it: [`LightSection`] |
 /// | `[photons]` | all defaults | how photons are emitted and followed: [`PhotonSettings`] |
 /// | `[estimate]` | all defaults | how the photon map is read: [`EstimateSettings`] |
@@ -52,7 +52,8 @@ use table::Table;
 #[allow(missing_docs)]
 pub struct SceneFile {
     pub camera: CameraSection,
-    pub medium: MediumSection,
+    #[serde(rename = "medium", serialize_with = "serialize_media")]
+    pub media: Vec<MediumSection>,
     #[serde(rename = "light")]
     pub lights: Vec<LightSection>,
     pub photons: PhotonSettings,
@@ -89,16 +90,34 @@ impl SceneFile {
         let asks_for_k = EstimateSettings::KEYS.iter().any(|key| has_key(tree, "estimate", key));
         let file = Self {
             camera: CameraSection::read(&root.section("camera")?)?,
-            medium: MediumSection::read(&root.section("medium")?)?,
+            media: MediumSection::read_all(&root)?,
             lights: lights.iter().map(LightSection::read).collect::<Result<_, _>>()?,
             photons: PhotonSettings::read(&root.section("photons")?)?,
             estimate: EstimateSettings::read(&root.section("estimate")?)?,
             render: RenderSettings::read(&root.section("render")?, asks_for_k)?,
         };
-        let is_lit = !file.lights.is_empty() || file.medium.emits();
+        let is_lit = !file.lights.is_empty() || file.media.iter().any(MediumSection::emits);
         root.ensure("light", is_lit, "the scene has no light; add a [[light]]")?;
         Ok(file)
     }
+}
+
+/// One medium is a table, several are a list of them.
+fn serialize_media<S: Serializer>(
+    media: &[MediumSection],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match media {
+        [only] => only.serialize(serializer),
+        _ => media.serialize(serializer),
+    }
+}
+
+/// Whether the file, or what replaces its values, asks for a lattice.
+pub(super) fn asks_for_lattice(tree: &Node) -> bool {
+    let render = Table::root(tree).and_then(|root| root.section("render"));
+    let gather = render.and_then(|render| render.get::<String>("gather"));
+    matches!(gather, Ok(Some(word)) if word == "lattice")
 }
 
 /// Whether the file, or what replaces its values, says something at `section.key`.

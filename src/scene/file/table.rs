@@ -86,6 +86,14 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// The table at `key`, or those of the list there; an empty one if the file does not give it.
+    pub fn section_or_sections(&self, key: &str) -> Result<Vec<Table<'a>>, Problem> {
+        match self.find(key).map(|node| &node.value) {
+            Some(Value::List(_)) => self.sections(key),
+            _ => self.section(key).map(|table| vec![table]),
+        }
+    }
+
     /// The value of `key`, if the file gives it.
     pub fn get<T: FromNode>(&self, key: &str) -> Result<Option<T>, Problem> {
         let Some(node) = self.find(key) else { return Ok(None) };

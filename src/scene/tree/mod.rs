@@ -115,6 +115,35 @@ impl Node {
         }
     }
 
+    /// Puts `value` at `key` of each table in the list at `section` that `applies`; elsewhere as [`Self::set`].
+    pub fn set_in_each(
+        &mut self,
+        section: &str,
+        key: &str,
+        value: Value,
+        applies: impl Fn(&Node) -> bool,
+    ) {
+        let Some(Node { value: Value::List(items), .. }) =
+            self.entry(section, || Value::Table(Vec::new()))
+        else {
+            return self.set(section, key, value);
+        };
+        for item in items.iter_mut().filter(|item| applies(item)) {
+            if let Some(node) = item.entry(key, || value.clone()) {
+                *node = Node { origin: Origin::Override, value: value.clone() };
+            }
+        }
+    }
+
+    /// The text at `key` of a table.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        let Value::Table(entries) = &self.value else { return None };
+        match &entries.iter().find(|(name, _)| name == key)?.1.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
     fn entry(&mut self, key: &str, default: impl FnOnce() -> Value) -> Option<&mut Node> {
         let origin = self.origin;
         let Value::Table(entries) = &mut self.value else { return None };
