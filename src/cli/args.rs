@@ -50,6 +50,8 @@ Examples:
       A quick draft.
   photonvdb render fog.toml -o fog.exr --target-error 0.02
       As many passes as it takes to be within 2 %, noise and bias; --time-budget 60 for the best of a minute.
+  photonvdb render fog.toml -o fog.exr --passes 1000 --checkpoint fog.ckpt
+      Kept after every pass; once it was killed, the same with --resume fog.ckpt goes on to the same image.
   photonvdb render fog.toml -o fog.exr --gather knn --k 100 --divisor calibrated
       From the photon map: the 100 nearest photons of each point.
   photonvdb render fog.toml -o fog.exr --reference truth.exr --report fog.json
@@ -180,6 +182,16 @@ pub struct RenderArguments {
     /// Take single scattering from photons, too, instead of sampling it towards the lights
     #[arg(long)]
     pub photons_only: bool,
+
+    /// File to keep the render's state in, written after every pass: a render that is killed goes on from there with --resume
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+
+    /// Checkpoint to go on from, of the same scene and settings, to the same image as without a break; may be the file of
+    /// --checkpoint. With more --passes, or another --target-error, passes are added. A --time-budget counts the time already
+    /// spent
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
 
     /// Image to compare with, of the same size; the figures go to stderr and to the report
     #[arg(long, value_name = "REF.exr")]

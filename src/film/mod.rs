@@ -48,6 +48,11 @@ impl Film {
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, height, pixels: vec![Pixel::default(); width * height] }
     }
+
+    /// Makes the film black.
+    pub fn clear(&mut self) {
+        self.pixels.fill(Pixel::default());
+    }
 }
 
 /// All layers of one pixel. Radiance is their sum: single + multiple scattering + emission.

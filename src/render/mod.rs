@@ -4,6 +4,7 @@
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
 mod calibration;
+mod checkpoint;
 mod distances;
 mod emitted_light;
 mod error_estimate;
@@ -17,25 +18,31 @@ mod photon_query;
 mod pixel_peak;
 mod pixel_samples;
 mod reader;
+mod render_state;
 mod report;
 mod scattered_light;
 mod shadow;
 mod single_scatter;
 
 pub use calibration::Calibration;
+pub use checkpoint::CheckpointError;
 pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
 pub use passes::photons_per_pass;
 pub use reader::{RayRadiance, Reader};
+pub use render_state::RenderState;
 pub use report::{RenderReport, StageSeconds};
 pub use scattered_light::Gather;
+
+use std::path::Path;
 
 use crate::film::Film;
 use crate::map::MapError;
 use crate::medium::{Bounds, MediumExtinction};
 use crate::scene::Scene;
+use lit_lattice::MAX_RESOLUTION as MAX_LATTICE;
 use passes::Passes;
 
 /// When a render ends: whichever comes first.
@@ -91,6 +98,15 @@ pub enum RenderError {
     Map(#[from] MapError),
 }
 
+/// Where a render begins, and where it is kept.
+#[derive(Clone, Debug, Default)]
+pub struct Checkpoints<'a> {
+    /// The state to go on from, instead of from no pass; of the same scene and options ([`RenderState::load`]).
+    pub resume_from: Option<RenderState>,
+    /// The file to which the state is written after every pass.
+    pub save_to: Option<&'a Path>,
+}
+
 /// Renders all passes, or those until the observer asks to stop: at least one.
 ///
 /// # Errors
@@ -100,14 +116,32 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<Rendering, RenderError> {
+    render_from(scene, options, observer, Checkpoints::default())
+}
+
+/// The same from a state that was kept, and keeping it: what is rendered in several runs is, byte for byte, what one run
+/// renders that ends by the same number of passes.
+///
+/// # Errors
+/// As [`render`]. A checkpoint that cannot be written is none: the observer is told.
+pub fn render_from(
+    scene: &Scene,
+    options: &RenderOptions,
+    observer: &dyn Observer,
+    checkpoints: Checkpoints,
+) -> Result<Rendering, RenderError> {
     if matches!(scene.medium.bounds, Bounds::Infinite) {
         return Err(RenderError::InfiniteMedium);
     }
     match &scene.medium.extinction {
-        MediumExtinction::Uniform(uniform) => Passes::new(scene, uniform, options, observer).run(),
-        MediumExtinction::Chromatic(chromatic) => {
-            Passes::new(scene, chromatic, options, observer).run()
+        MediumExtinction::Uniform(uniform) => {
+            Passes::new(scene, uniform, options, observer, checkpoints).run()
         }
-        MediumExtinction::Grid(grid) => Passes::new(scene, &**grid, options, observer).run(),
+        MediumExtinction::Chromatic(chromatic) => {
+            Passes::new(scene, chromatic, options, observer, checkpoints).run()
+        }
+        MediumExtinction::Grid(grid) => {
+            Passes::new(scene, &**grid, options, observer, checkpoints).run()
+        }
     }
 }

@@ -1,18 +1,18 @@
 //! The passes of a render: independent, averaged, and as many as the limits ask for.
 
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::time::Instant;
 
 use crate::emission::Emission;
 use crate::film::Film;
 use crate::math::Stream;
 use crate::medium::Extinction;
-use crate::render::error_estimate::ErrorProbes;
 use crate::render::film_pass::{FilmPass, PassFilm};
 use crate::render::scattered_light::ScatteredLight;
 use crate::render::{
-    Gather, LitMedium, Observer, Reader, RenderError, RenderOptions, RenderReport, Rendering,
-    Stage, lit_lattice,
+    Checkpoints, Gather, LitMedium, MAX_LATTICE, Observer, Reader, RenderError, RenderOptions,
+    RenderReport, RenderState, Rendering, Stage, lit_lattice,
 };
 use crate::scene::Scene;
 
@@ -48,29 +48,31 @@ pub struct Passes<'a, E> {
     samples_per_pixel: usize,
     /// Points a ray.
     most_samples: usize,
-    /// Passes begun, with those that a finer lattice replaced.
-    begun: u32,
-    film: Film,
-    probes: ErrorProbes,
-    report: RenderReport,
+    state: RenderState,
+    /// Where the state is written after every pass.
+    save_to: Option<&'a Path>,
+    /// Seconds that the state had taken when this run began.
+    seconds_before: f64,
 }
 
 /// Where scattered light is gathered from.
 enum Strategy<'a> {
     Knn,
-    Lattice { emission: Emission<'a>, resolution: usize },
+    Lattice(Emission<'a>),
 }
 
 impl<'a, E: Extinction> Passes<'a, E> {
-    /// None yet.
+    /// None yet, or those of a state that was kept.
     pub fn new(
         scene: &'a Scene,
         extinction: &'a E,
         options: &'a RenderOptions,
         observer: &'a dyn Observer,
+        checkpoints: Checkpoints<'a>,
     ) -> Self {
         let is_limited = options.has_limit();
         let mut samples_per_pixel = scene.render.samples_per_pixel;
+        let mut resolution = 0;
         let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
             Gather::Lattice => {
@@ -81,11 +83,14 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     total = expected_photons(options.target_error);
                 }
                 let emission = lit_lattice::emission(scene, extinction, photons);
-                let resolution = scene.render.lattice;
-                let resolution = resolution.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
-                Strategy::Lattice { emission, resolution }
+                let asked = scene.render.lattice;
+                resolution = asked.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
+                Strategy::Lattice(emission)
             }
         };
+        let Checkpoints { resume_from, save_to } = checkpoints;
+        let film = || Film::new(scene.camera.width, scene.camera.height);
+        let state = resume_from.unwrap_or_else(|| RenderState::new(film(), resolution));
         Self {
             scene,
             extinction,
@@ -95,49 +100,66 @@ impl<'a, E: Extinction> Passes<'a, E> {
             strategy,
             samples_per_pixel,
             most_samples: if is_limited { POINTS_A_RAY } else { usize::MAX },
-            begun: 0,
-            film: Film::new(scene.camera.width, scene.camera.height),
-            probes: ErrorProbes::new(scene.camera.width, scene.camera.height),
-            report: RenderReport::default(),
+            seconds_before: state.seconds,
+            state,
+            save_to,
         }
     }
 
-    /// Renders passes until a limit is reached or the observer asks to stop: at least one.
+    /// Renders passes until a limit is reached or the observer asks to stop: at least one, unless there are some already.
     pub fn run(mut self) -> Result<Rendering, RenderError> {
-        loop {
-            self.add_pass()?;
-            self.report.error = self.probes.error();
-            self.observer.pass_finished(self.report.passes_done, self.report.error);
-            if self.is_done() || self.observer.cancelled() {
-                return Ok(Rendering { film: self.film, report: self.report });
-            }
-            self.refine();
+        if self.state.begun > 0 {
+            self.save();
         }
+        while !self.has_ended() {
+            self.refine();
+            self.add_pass()?;
+            self.state.report.error = self.state.probes.error();
+            self.state.seconds = self.seconds();
+            let report = &self.state.report;
+            self.observer.pass_finished(report.passes_done, report.error);
+            self.save();
+        }
+        Ok(Rendering { film: self.state.film, report: self.state.report })
+    }
+
+    /// Writes the state. A disk that is full ends no render: the observer is told.
+    fn save(&self) {
+        let Some(path) = self.save_to else { return };
+        if let Err(failure) = self.state.save(path, self.scene, self.options) {
+            self.observer.checkpoint_failed(&failure);
+        }
+    }
+
+    /// Wall-clock time of this run and those before \[s\].
+    fn seconds(&self) -> f64 {
+        self.seconds_before + self.started.elapsed().as_secs_f64()
     }
 
     fn add_pass(&mut self) -> Result<(), RenderError> {
-        let Self { scene, extinction, observer, report, .. } = self;
-        let seed = pass_seed(scene.photons.seed, self.begun);
-        let half = self.begun % 2;
+        let Self { scene, extinction, observer, .. } = self;
+        let RenderState { begun, resolution, film, probes, report, .. } = &mut self.state;
+        let seed = pass_seed(scene.photons.seed, *begun);
+        let half = *begun % 2;
         let film_pass = FilmPass {
             scene,
             seed,
             half,
             samples_per_pixel: self.samples_per_pixel,
-            first_sample: u64::from(self.begun / 2) * self.samples_per_pixel as u64,
+            first_sample: u64::from(*begun / 2) * self.samples_per_pixel as u64,
         };
         let made = match &mut self.strategy {
             Strategy::Knn => {
                 let mut lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
                 if self.options.has_limit() {
-                    lit = lit.with_k(shrunk_k(scene.estimate.k, self.begun));
+                    lit = lit.with_k(shrunk_k(scene.estimate.k, *begun));
                 }
                 gather(&film_pass, || lit.reader(), *observer, report)
             }
-            Strategy::Lattice { emission, resolution } => {
+            Strategy::Lattice(emission) => {
                 emission.reseed(seed);
                 // Beyond the photons that it was chosen for cells go on shrinking.
-                let emitted = emission.count().saturating_mul(u64::from(self.begun) + 1);
+                let emitted = emission.count().saturating_mul(u64::from(*begun) + 1);
                 let grown = match self.options.has_limit() && scene.render.lattice.is_none() {
                     true => lit_lattice::resolution::<E>(emitted),
                     false => 0,
@@ -156,45 +178,47 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 gather(&film_pass, reader, *observer, report)
             }
         };
-        self.begun += 1;
-        self.film.average_in(&made.film, report.passes_done);
-        self.probes.add(half as usize, &made.film, &made.coarse_differences);
+        *begun += 1;
+        film.average_in(&made.film, report.passes_done);
+        probes.add(half as usize, &made.film, &made.coarse_differences);
         report.passes_done += 1;
         Ok(())
     }
 
-    /// Whether a limit is reached.
-    fn is_done(&self) -> bool {
-        let done = self.report.passes_done;
+    /// Whether a limit is reached, or the end asked for.
+    fn has_ended(&self) -> bool {
+        let done = self.state.report.passes_done;
         let within = |target: f64| {
-            let error = self.report.error.map_or(f64::INFINITY, |error| error.total());
+            let error = self.state.report.error.map_or(f64::INFINITY, |error| error.total());
             done >= FEWEST_FOR_ERROR && error <= target
         };
         // A pass that would end too late is not begun.
-        let seconds = self.started.elapsed().as_secs_f64();
-        let next = seconds * f64::from(self.begun + 1) / f64::from(self.begun);
-        done >= self.options.passes
-            || self.options.target_error.is_some_and(within)
-            || self.options.seconds.is_some_and(|budget| next > budget)
+        let begun = f64::from(self.state.begun);
+        let is_late = |budget: f64| self.seconds() * (begun + 1.0) / begun > budget;
+        done > 0
+            && (done >= self.options.passes
+                || self.options.target_error.is_some_and(within)
+                || self.options.seconds.is_some_and(is_late)
+                || self.observer.cancelled())
     }
 
     /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
     fn refine(&mut self) {
-        let (Some(target), Some(error)) = (self.options.target_error, self.report.error) else {
+        let state = &mut self.state;
+        let (Some(target), Some(error)) = (self.options.target_error, state.report.error) else {
             return;
         };
-        let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
         // What the estimate of the bias may be off by itself counts as noise.
         let too_much = (error.bias - BIAS_NOISE * error.noise) / (BIAS_SHARE * target);
-        let can = *resolution < lit_lattice::MAX_RESOLUTION && self.scene.render.lattice.is_none();
-        if self.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
+        let can = matches!(self.strategy, Strategy::Lattice(_))
+            && state.resolution < MAX_LATTICE
+            && self.scene.render.lattice.is_none();
+        if state.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
             return;
         }
-        let finer = *resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
-        *resolution = (finer as usize).min(lit_lattice::MAX_RESOLUTION);
-        self.film = Film::new(self.film.width, self.film.height);
-        self.probes = ErrorProbes::new(self.film.width, self.film.height);
-        self.report.passes_done = 0;
+        let finer = state.resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
+        state.resolution = (finer as usize).min(MAX_LATTICE);
+        state.restart_film();
     }
 }
 

@@ -18,6 +18,7 @@ mod hash;
 mod light_counts;
 mod overrides;
 mod plan;
+mod settings;
 mod tree;
 mod volume;
 
