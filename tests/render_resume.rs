@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use photonvdb::files::WriteFailure;
 use photonvdb::film::Film;
 use photonvdb::render::{
-    CheckpointError, Checkpoints, ErrorEstimate, Observer, RenderOptions, RenderState, Rendering,
-    Stage, render, render_from,
+    CheckpointError, Checkpoints, CostlyLayers, ErrorEstimate, Observer, RenderOptions,
+    RenderState, Rendering, Stage, render, render_from,
 };
 use photonvdb::scene::{Overrides, Scene};
 
@@ -88,11 +88,15 @@ fn a_resumed_render_is_the_same_byte_for_byte() {
     let photons_only = Overrides { photons_only: Some(true), ..with_gather("knn") };
     let target = RenderOptions { target_error: Some(0.02), ..RenderOptions::passes(14) };
     let five = RenderOptions::passes(5);
+    let layers = CostlyLayers { depths: true, lights: true };
+    let layered = RenderOptions { layers, ..RenderOptions::passes(3) };
     for (scene, options) in [
         (example("fog_point.toml", with_gather("knn")), five),
         (example("fog_spot.toml", calibrated), five),
         (example("smoke_sun.toml", photons_only), RenderOptions::passes(3)),
         (example("fog_point.toml", with_gather("lattice")), five),
+        (example("cloud_sky.toml", with_gather("lattice")), layered),
+        (example("fire.toml", with_gather("knn")), layered),
         (example("smoke_sun.toml", with_gather("lattice")), target),
         (example("fog_point.toml", with_gather("knn")), target),
     ] {
@@ -185,6 +189,16 @@ fn another_render_is_refused_by_what_differs() {
     let limited = RenderOptions { target_error: Some(0.1), ..options };
     assert!(said(&example(name, base.clone()), &limited).contains("--target-error"));
     assert!(said(&example("fog_spot.toml", base.clone()), &options).contains("another scene"));
+    let holdout = Overrides { background: Some("holdout".into()), ..base.clone() };
+    let held_out = said(&example(name, holdout), &options);
+    assert!(held_out.contains("render.background = its default"), "{held_out}");
+    for (layers, word) in [
+        (CostlyLayers { depths: true, lights: false }, "--layers depth = false"),
+        (CostlyLayers { depths: false, lights: true }, "--layers lights = false"),
+    ] {
+        let layered = RenderOptions { layers, ..options };
+        assert!(said(&example(name, base.clone()), &layered).contains(word));
+    }
     assert!(RenderState::load(&path, &example(name, base), &options).is_ok());
 }
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use photonvdb::film::ExtraLayers;
+use photonvdb::film::ExrOptions;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::RenderOptions;
+use photonvdb::render::{CostlyLayers, RenderOptions};
 use photonvdb::scene::Overrides;
 
 use super::bias::args::BiasArguments;
@@ -50,6 +50,8 @@ Examples:
       A quick draft.
   photonvdb render fog.toml -o fog.exr --target-error 0.02
       As many passes as it takes to be within 2 %, noise and bias; --time-budget 60 for the best of a minute.
+  photonvdb render smoke.toml -o smoke.exr --holdout --half --layers depth,lights
+      For compositing: no background, depths, and a layer a light.
   photonvdb render fog.toml -o fog.exr --passes 1000 --checkpoint fog.ckpt
       Kept after every pass; once it was killed, the same with --resume fog.ckpt goes on to the same image.
   photonvdb render fog.toml -o fog.exr --gather knn --k 100 --divisor calibrated
@@ -117,7 +119,7 @@ pub struct RenderArguments {
     /// Scene file, .toml or .json
     pub scene: PathBuf,
 
-    /// Image to write: linear 32-bit OpenEXR with all layers
+    /// Image to write: linear OpenEXR with all layers
     #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr_name)]
     pub output: PathBuf,
 
@@ -174,6 +176,15 @@ pub struct RenderArguments {
     /// Image size in pixels [default: camera.resolution of the scene]
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<[u64; 2]>,
+
+    /// Leave out of the image what the camera sees of environments, which still light the medium: over any background the image is
+    /// then composited by its alpha [default: render.background of the scene]
+    #[arg(long)]
+    pub holdout: bool,
+
+    /// Write colours and alpha as 16-bit floats; depths, variance and counts stay in 32 bits
+    #[arg(long)]
+    pub half: bool,
 
     /// More layers to write, separated by commas
     #[arg(long, value_name = "LAYERS", value_delimiter = ',')]
@@ -248,6 +259,14 @@ pub enum ExtraLayer {
     KernelRadius,
     /// Square of the radiance's standard error, from how passes differ, and the number of rays
     Variance,
+    /// Alpha a channel, as AR, AG and AB
+    Alpha,
+    /// Z, the distance from the camera at which half of the light is lost, and scatter.Z, the mean one of the first scattering;
+    /// infinite where there is none
+    Depth,
+    /// light.NAME or light.NUMBER: the image of each light alone, by single and multiple scattering and seen directly; light.medium
+    /// of a fire. Takes as long a light as the whole image without
+    Lights,
 }
 
 /// `photonvdb inspect`
@@ -342,6 +361,7 @@ impl RenderArguments {
             lattice: self.lattice,
             samples_per_pixel: self.samples,
             photons_only: self.photons_only.then_some(true),
+            background: self.holdout.then(|| "holdout".to_string()),
             sdf_to_fog: self.sdf_to_fog.then_some(true),
             max_volume_memory: self.volume.max_volume_memory,
             strict: self.strict,
@@ -352,15 +372,21 @@ impl RenderArguments {
     pub fn options(&self) -> RenderOptions {
         let limited = self.target_error.is_some() || self.time_budget.is_some();
         let passes = self.passes.unwrap_or(if limited { u32::MAX } else { 1 });
-        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget }
+        let layers = CostlyLayers {
+            depths: self.layers.contains(&ExtraLayer::Depth),
+            lights: self.layers.contains(&ExtraLayer::Lights),
+        };
+        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget, layers }
     }
 
-    /// The layers asked for beyond the usual.
-    pub fn extra_layers(&self) -> ExtraLayers {
-        ExtraLayers {
+    /// What the image's file holds.
+    pub fn exr_options(&self) -> ExrOptions {
+        ExrOptions {
             photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
             kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
             variance: self.layers.contains(&ExtraLayer::Variance),
+            alpha: self.layers.contains(&ExtraLayer::Alpha),
+            half: self.half,
         }
     }
 }

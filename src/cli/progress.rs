@@ -28,7 +28,7 @@ impl Progress {
         interrupted: Arc<AtomicBool>,
     ) -> Self {
         let bar = RwLock::new(ProgressBar::hidden());
-        let (pass, passes) = (AtomicU32::new(passes_done), options.passes);
+        let (pass, passes) = (AtomicU32::new(passes_done + 1), options.passes);
         Self { bar, pass, passes, error: RwLock::new(None), quiet, interrupted }
     }
 
@@ -61,9 +61,6 @@ impl Progress {
 
 impl Observer for Progress {
     fn stage_started(&self, stage: Stage, total: u64) {
-        if stage == Stage::Trace {
-            self.pass.fetch_add(1, Ordering::Relaxed);
-        }
         *self.bar.write().unwrap_or_else(PoisonError::into_inner) = self.start_bar(stage, total);
     }
 
@@ -76,6 +73,7 @@ impl Observer for Progress {
     }
 
     fn pass_finished(&self, _: u32, error: Option<ErrorEstimate>) {
+        self.pass.fetch_add(1, Ordering::Relaxed);
         *self.error.write().unwrap_or_else(PoisonError::into_inner) = error;
     }
 

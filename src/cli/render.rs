@@ -141,7 +141,7 @@ fn write_images(
 ) -> Result<(), FilmError> {
     let made = &rendering.report;
     let metadata = settings.metadata(scene, made.emitted_count, made.passes_done);
-    write_exr(&arguments.output, &rendering.film, &arguments.extra_layers(), &metadata)?;
+    write_exr(&arguments.output, &rendering.film, &arguments.exr_options(), &metadata)?;
     match &arguments.preview {
         Some(path) => write_preview_png(path, &rendering.film, None),
         None => Ok(()),

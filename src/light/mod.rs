@@ -4,10 +4,12 @@
 //! that attenuates.
 
 mod area;
+mod choice;
 mod environment;
 mod punctual;
 
 pub use area::{QuadLight, SphereLight};
+pub use choice::LightChoice;
 pub use environment::{DirectionSample, Environment, EnvironmentImage};
 pub use punctual::{DirectionalLight, PointLight, SpotLight};
 

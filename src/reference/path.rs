@@ -14,7 +14,7 @@
 use crate::light::Light;
 use crate::math::{DVec3, Random, Ray, Rgb, Span, max_channel, uniform};
 use crate::medium::{Extinction, Flight, Medium};
-use crate::scene::Scene;
+use crate::scene::{Background, Scene};
 
 use super::aim::Aim;
 use super::equi_angular::EquiAngular;
@@ -65,6 +65,7 @@ pub(super) struct PathTracer<'a, E> {
     extinction: &'a E,
     lights: &'a [Light],
     has_environment: bool,
+    background: Background,
     /// For each light, sampling of distances on the current segment.
     towards: Vec<Option<EquiAngular>>,
     /// For each light, the density of all ways that find the last collision over that of the flight.
@@ -79,6 +80,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             extinction,
             lights,
             has_environment: lights.iter().any(|light| matches!(light, Light::Environment(_))),
+            background: scene.render.background,
             towards: vec![None; lights.len()],
             ways: vec![1.0; lights.len()],
         }
@@ -143,6 +145,10 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let mut sum = Rgb::ZERO;
         for (light, ways) in self.lights.iter().zip(&self.ways) {
             let Some((distance, radiance)) = light.seen_along(ray) else { continue };
+            let is_background = phase_density.is_none() && distance.is_infinite();
+            if is_background && self.background == Background::Holdout {
+                continue;
+            }
             if radiance == Rgb::ZERO {
                 continue;
             }

@@ -9,6 +9,7 @@ mod distances;
 mod emitted_light;
 mod error_estimate;
 mod film_pass;
+mod light_groups;
 mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
@@ -17,6 +18,7 @@ mod passes;
 mod photon_query;
 mod pixel_peak;
 mod pixel_samples;
+mod ray_depths;
 mod reader;
 mod render_state;
 mod report;
@@ -54,12 +56,25 @@ pub struct RenderOptions {
     pub target_error: Option<f64>,
     /// Wall-clock time \[s\]; the first pass is always made.
     pub seconds: Option<f64>,
+    /// What the film holds beside the usual layers.
+    pub layers: CostlyLayers,
+}
+
+/// Layers that cost something to find.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CostlyLayers {
+    /// How deep pixels look: a tenth of the time for rays.
+    pub depths: bool,
+    /// The image of each light, by the name that the scene gives it: each is gathered by itself, from its own of the same photons, and
+    /// the film is their sum.
+    pub lights: bool,
 }
 
 impl RenderOptions {
     /// So many passes, and no other limit.
     pub fn passes(passes: u32) -> Self {
-        Self { passes: passes.max(1), target_error: None, seconds: None }
+        let layers = CostlyLayers::default();
+        Self { passes: passes.max(1), target_error: None, seconds: None, layers }
     }
 
     /// Whether something else than the number of passes ends the render: then passes are small.

@@ -5,16 +5,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::emission::Emission;
-use crate::film::Film;
+use crate::estimate::Divisor;
+use crate::light::LightChoice;
 use crate::math::Stream;
 use crate::medium::Extinction;
 use crate::render::film_pass::{FilmPass, PassFilm};
+use crate::render::light_groups::{LightGroups, empty_film};
 use crate::render::scattered_light::ScatteredLight;
 use crate::render::{
-    Checkpoints, Gather, LitMedium, MAX_LATTICE, Observer, Reader, RenderError, RenderOptions,
-    RenderReport, RenderState, Rendering, Stage, lit_lattice,
+    Calibration, Checkpoints, Gather, LitMedium, MAX_LATTICE, Observer, Reader, RenderError,
+    RenderOptions, RenderReport, RenderState, Rendering, Stage, lit_lattice,
 };
 use crate::scene::Scene;
+use crate::trace::PowerBalance;
 
 /// Photons a pixel and pass, where the image is made to a limit: what makes noise of photons and of rays about equal.
 const PHOTONS_A_PIXEL: u64 = 2;
@@ -48,6 +51,7 @@ pub struct Passes<'a, E> {
     samples_per_pixel: usize,
     /// Points a ray.
     most_samples: usize,
+    groups: LightGroups,
     state: RenderState,
     /// Where the state is written after every pass.
     save_to: Option<&'a Path>,
@@ -89,8 +93,9 @@ impl<'a, E: Extinction> Passes<'a, E> {
             }
         };
         let Checkpoints { resume_from, save_to } = checkpoints;
-        let film = || Film::new(scene.camera.width, scene.camera.height);
+        let film = || empty_film(scene, options);
         let state = resume_from.unwrap_or_else(|| RenderState::new(film(), resolution));
+        let groups = LightGroups::of(scene, options);
         Self {
             scene,
             extinction,
@@ -100,6 +105,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             strategy,
             samples_per_pixel,
             most_samples: if is_limited { POINTS_A_RAY } else { usize::MAX },
+            groups,
             seconds_before: state.seconds,
             state,
             save_to,
@@ -136,30 +142,79 @@ impl<'a, E: Extinction> Passes<'a, E> {
         self.seconds_before + self.started.elapsed().as_secs_f64()
     }
 
+    /// Renders the next pass, in the parts that its layers ask for, and averages it in.
     fn add_pass(&mut self) -> Result<(), RenderError> {
+        let mut pass: Option<PassFilm> = None;
+        let mut power = PowerBalance::default();
+        for (choice, layer) in self.groups.parts.clone() {
+            let calibration = self.calibration()?;
+            let mut part_report = RenderReport { calibration, ..RenderReport::default() };
+            let part = self.gather_part(choice, &mut part_report)?;
+            self.state.report.add_costs(&part_report);
+            power.add(&part_report.power);
+            match (&mut pass, layer) {
+                (Some(pass), _) => pass.add_light(&part, layer),
+                (None, None) => pass = Some(part),
+                (None, Some(layer)) => pass = Some(part.into_layer(&self.groups.names, layer)),
+            }
+        }
+        let Some(pass) = pass else { return Ok(()) };
+        let RenderState { begun, film, probes, report, .. } = &mut self.state;
+        report.power.average_in(&power, report.passes_done);
+        film.average_in(&pass.film, report.passes_done);
+        probes.add((*begun % 2) as usize, &pass.film, &pass.coarse_differences);
+        *begun += 1;
+        report.passes_done += 1;
+        Ok(())
+    }
+
+    /// What k photons count as, where it is measured: once a render, and of all lights together, as each alone has few photons.
+    fn calibration(&mut self) -> Result<Option<Calibration>, RenderError> {
+        let Self { scene, extinction, observer, groups, .. } = self;
+        let known = self.state.report.calibration;
+        let is_measured = scene.estimate.divisor == Divisor::Calibrated;
+        let is_knn = matches!(self.strategy, Strategy::Knn);
+        if known.is_some() || !is_knn || !is_measured || groups.names.is_empty() {
+            return Ok(known);
+        }
+        let mut report = RenderReport::default();
+        LitMedium::prepare(scene, *extinction, scene.photons.seed, *observer, &mut report)?;
+        self.state.report.add_costs(&report);
+        Ok(report.calibration)
+    }
+
+    /// Traces and gathers some of the light of the next pass. Adds to `report`.
+    fn gather_part(
+        &mut self,
+        choice: LightChoice,
+        report: &mut RenderReport,
+    ) -> Result<PassFilm, RenderError> {
         let Self { scene, extinction, observer, .. } = self;
-        let RenderState { begun, resolution, film, probes, report, .. } = &mut self.state;
-        let seed = pass_seed(scene.photons.seed, *begun);
-        let half = *begun % 2;
+        let RenderState { begun, resolution, .. } = self.state;
+        let seed = pass_seed(scene.photons.seed, begun);
         let film_pass = FilmPass {
             scene,
             seed,
-            half,
+            half: begun % 2,
             samples_per_pixel: self.samples_per_pixel,
-            first_sample: u64::from(*begun / 2) * self.samples_per_pixel as u64,
+            first_sample: u64::from(begun / 2) * self.samples_per_pixel as u64,
+            choice,
+            finds_depths: self.options.layers.depths,
         };
-        let made = match &mut self.strategy {
+        Ok(match &mut self.strategy {
             Strategy::Knn => {
-                let mut lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
+                let mut lit =
+                    LitMedium::prepare_for(choice, scene, *extinction, seed, *observer, report)?;
                 if self.options.has_limit() {
-                    lit = lit.with_k(shrunk_k(scene.estimate.k, *begun));
+                    lit = lit.with_k(shrunk_k(scene.estimate.k, begun));
                 }
                 gather(&film_pass, || lit.reader(), *observer, report)
             }
             Strategy::Lattice(emission) => {
                 emission.reseed(seed);
+                emission.choose(choice);
                 // Beyond the photons that it was chosen for cells go on shrinking.
-                let emitted = emission.count().saturating_mul(u64::from(*begun) + 1);
+                let emitted = emission.count().saturating_mul(u64::from(begun) + 1);
                 let grown = match self.options.has_limit() && scene.render.lattice.is_none() {
                     true => lit_lattice::resolution::<E>(emitted),
                     false => 0,
@@ -168,7 +223,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     scene,
                     *extinction,
                     emission,
-                    grown.max(*resolution),
+                    grown.max(resolution),
                     *observer,
                     report,
                 )?;
@@ -177,12 +232,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     || Reader::new(scene, *extinction, &lattice).with_most_samples(most_samples);
                 gather(&film_pass, reader, *observer, report)
             }
-        };
-        *begun += 1;
-        film.average_in(&made.film, report.passes_done);
-        probes.add(half as usize, &made.film, &made.coarse_differences);
-        report.passes_done += 1;
-        Ok(())
+        })
     }
 
     /// Whether a limit is reached, or the end asked for.

@@ -47,12 +47,15 @@ impl SceneFile {
             MediumSection::Vdb { file, .. } => Some(("medium.file".into(), file)),
             MediumSection::Homogeneous { .. } => None,
         };
-        let lights = self.lights.iter_mut().enumerate().filter_map(|(index, light)| match light {
-            LightSection::ImageEnvironment { file, .. } => {
-                Some((format!("light[{index}].file"), file))
-            }
-            _ => None,
-        });
+        let lights =
+            self.lights.iter_mut().enumerate().filter_map(|(index, light)| {
+                match &mut light.light {
+                    LightSection::ImageEnvironment { file, .. } => {
+                        Some((format!("light[{index}].file"), file))
+                    }
+                    _ => None,
+                }
+            });
         medium.into_iter().chain(lights)
     }
 }

@@ -24,9 +24,9 @@ mod volume;
 
 pub use error::SceneError;
 pub use file::{
-    BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys, LightSection,
-    MediumSection, PhaseSection, PhotonSettings, RenderSettings, SceneFile, TemperatureKeys,
-    TransformSection,
+    Background, BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys,
+    LightSection, MediumSection, NamedLight, PhaseSection, PhotonSettings, RenderSettings,
+    SceneFile, TemperatureKeys, TransformSection,
 };
 pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
@@ -52,6 +52,8 @@ pub struct Scene {
     pub medium: Medium,
     /// At least one, unless the medium has light of its own.
     pub lights: Vec<Light>,
+    /// What each light is called, if the scene says so; may be shorter than `lights`.
+    pub light_names: Vec<Option<String>>,
     /// How photons are emitted and followed.
     pub photons: PhotonSettings,
     /// How the photon map is read.
@@ -108,12 +110,13 @@ impl Scene {
             build::medium(&file.medium, directory, rules, &mut warnings, &mut grids, &mut hashes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
-            .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
+            .map(|(index, named)| build::light(&named.light, &format!("light[{index}]"), directory))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             camera: file.camera.camera()?,
             medium,
             lights,
+            light_names: file.lights.iter().map(|named| named.name.clone()).collect(),
             photons: file.photons,
             estimate: file.estimate,
             render: file.render,

@@ -27,6 +27,8 @@ pub struct Overrides {
     pub samples_per_pixel: Option<u64>,
     /// `render.photons_only`
     pub photons_only: Option<bool>,
+    /// `render.background`, as the file spells it.
+    pub background: Option<String>,
     /// `medium.sdf_to_fog`
     pub sdf_to_fog: Option<bool>,
     /// Memory that reading a volume may take \[bytes\], instead of the default of [`Limits`]; not a value of the file.
@@ -59,6 +61,7 @@ impl Overrides {
         set("render", "lattice", self.lattice.map(integer));
         set("render", "samples_per_pixel", self.samples_per_pixel.map(integer));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
+        set("render", "background", self.background.clone().map(Value::Text));
         set("medium", "sdf_to_fog", self.sdf_to_fog.map(Value::Boolean));
         let resolution = self.resolution.map(|sides| {
             let item = |side| Node { origin: Origin::Override, value: integer(side) };

@@ -24,12 +24,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::estimate::CountLaw;
 use crate::files::WriteFailure;
-use crate::film::{Film, Pixel};
+use crate::film::{Pixel, PixelDepths};
 use crate::math::Rgb;
 use crate::render::error_estimate::{ErrorProbes, probed_count};
+use crate::render::light_groups::{LightGroups, empty_film};
 use crate::render::{
-    Calibration, Gather, MAX_LATTICE, RenderOptions, RenderReport, RenderState, StageSeconds,
-    photons_per_pass,
+    Calibration, CostlyLayers, Gather, MAX_LATTICE, RenderOptions, RenderReport, RenderState,
+    StageSeconds, photons_per_pass,
 };
 use crate::scene::Scene;
 use crate::trace::PowerBalance;
@@ -101,7 +102,7 @@ impl RenderState {
         let account: Account = serde_json::from_slice(&source.read_account()?)
             .map_err(|_| source.damaged("its account cannot be read"))?;
         account.check(path, scene, options)?;
-        let numbers = source.read_numbers(account.longest_numbers(scene))?;
+        let numbers = source.read_numbers(account.longest_numbers(scene, options))?;
         let state = account.into_state(&numbers, scene, options);
         state.ok_or_else(|| source.damaged("its numbers contradict each other"))
     }
@@ -132,6 +133,12 @@ impl RenderState {
         for scalar in SCALARS {
             push_layer(&mut bytes, pixels.iter().map(|pixel| [*scalar(&mut pixel.clone())]));
         }
+        if let Some(depths) = &self.film.depths {
+            push_layer(&mut bytes, depths.iter().map(depth_numbers));
+        }
+        for light in &self.film.lights {
+            push_layer(&mut bytes, light.radiance.iter().map(|radiance| radiance.to_array()));
+        }
         for half in &self.probes.halves {
             push_layer(&mut bytes, half.iter().map(|radiance| radiance.to_array()));
         }
@@ -158,6 +165,16 @@ impl RenderState {
     }
 }
 
+fn depth_numbers(depths: &PixelDepths) -> [f64; 4] {
+    let &PixelDepths { half_distance, half_share, scatter_distance, scatter_weight } = depths;
+    [half_distance, half_share, scatter_distance, scatter_weight]
+}
+
+fn depths_of(numbers: [f64; 4]) -> PixelDepths {
+    let [half_distance, half_share, scatter_distance, scatter_weight] = numbers;
+    PixelDepths { half_distance, half_share, scatter_distance, scatter_weight }
+}
+
 /// Everything that passes depend on, each under a name to tell people: what is likeliest to be mistyped first, and the hash of
 /// all that has no name last.
 fn settings(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
@@ -165,6 +182,9 @@ fn settings(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
     let is_limited = options.has_limit();
     settings.push(("photons a pass".into(), photons_per_pass(scene, options).to_string()));
     settings.push(("--target-error or --time-budget given".into(), is_limited.to_string()));
+    let CostlyLayers { depths, lights } = options.layers;
+    settings.push(("--layers depth".into(), depths.to_string()));
+    settings.push(("--layers lights".into(), lights.to_string()));
     settings.push((SCENE_HASH.into(), format!("{:016x}", scene.hash)));
     settings
 }
@@ -184,13 +204,23 @@ impl Account {
         if self.version != own {
             return Err(CheckpointError::OtherVersion { path, found: self.version.clone(), own });
         }
-        for (name, asked) in settings(scene, options) {
-            let found = self.settings.iter().find(|(other, _)| *other == name);
-            let found = found.map_or_else(|| "nothing".to_string(), |(_, value)| value.clone());
+        let own_settings = settings(scene, options);
+        let value_in = |settings: &[(String, String)], name: &str| {
+            let found = settings.iter().find(|(other, _)| other == name);
+            found.map_or_else(|| "its default".to_string(), |(_, value)| value.clone())
+        };
+        // Keys that are left out at their default may stand on one side only; the scene's hash comes last.
+        let names = self.settings.iter().chain(&own_settings).map(|(name, _)| name.as_str());
+        let named = names.filter(|name| *name != SCENE_HASH).collect::<Vec<_>>();
+        for name in named.into_iter().chain([SCENE_HASH]) {
+            let found = value_in(&self.settings, name);
+            let asked = value_in(&own_settings, name);
             if found != asked {
                 return Err(match name == SCENE_HASH {
                     true => CheckpointError::OtherScene { path, found, asked },
-                    false => CheckpointError::OtherSetting { path, name, found, asked },
+                    false => {
+                        CheckpointError::OtherSetting { path, name: name.into(), found, asked }
+                    }
                 });
             }
         }
@@ -202,12 +232,14 @@ impl Account {
     }
 
     /// The most bytes that the numbers may take.
-    fn longest_numbers(&self, scene: &Scene) -> u64 {
+    fn longest_numbers(&self, scene: &Scene, options: &RenderOptions) -> u64 {
         let pixels = scene.camera.width * scene.camera.height;
-        let colors = COLORS.len() + self.half_counts.len();
+        let lights = LightGroups::of(scene, options).names.len();
+        let colors = COLORS.len() + lights + self.half_counts.len();
         colors as u64 * layer_limit(3, pixels)
             + SCALARS.len() as u64 * layer_limit(1, pixels)
             + layer_limit(2, pixels)
+            + layer_limit(4, pixels)
             + layer_limit(FIGURES, 1)
     }
 
@@ -219,7 +251,7 @@ impl Account {
         options: &RenderOptions,
     ) -> Option<RenderState> {
         let (width, height) = (scene.camera.width, scene.camera.height);
-        let is_lattice = scene.render.gather == Gather::Lattice;
+        let is_lattice = scene.render.gather != Gather::Knn;
         let lattices = if is_lattice { 2..=MAX_LATTICE } else { 0..=0 };
         let probed = if is_lattice { probed_count(width, height) } else { 0 };
         let [even, odd] = self.half_counts;
@@ -234,7 +266,7 @@ impl Account {
             return None;
         }
         let mut layers = Layers { rest: numbers };
-        let mut film = Film::new(width, height);
+        let mut film = empty_film(scene, options);
         let count = film.pixels.len();
         for color in COLORS {
             let values = layers.next::<3>(count)?;
@@ -243,6 +275,12 @@ impl Account {
         for scalar in SCALARS {
             let values = layers.next::<1>(count)?;
             film.pixels.iter_mut().zip(values).for_each(|(p, [v])| *scalar(p) = v);
+        }
+        if let Some(depths) = &mut film.depths {
+            *depths = layers.next::<4>(count)?.into_iter().map(depths_of).collect();
+        }
+        for light in &mut film.lights {
+            light.radiance = layers.next::<3>(count)?.into_iter().map(Rgb::from).collect();
         }
         let mut half = || Some(layers.next::<3>(count)?.into_iter().map(Rgb::from).collect());
         let halves = [half()?, half()?];

@@ -15,6 +15,7 @@ use crate::scene::error::Problem;
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
 /// | `gather` | `"auto"`, `"knn"`, `"lattice"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, else `"lattice"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
+/// | `background` | `"visible"`, `"holdout"` | | `"visible"` | | whether the camera sees environments; held out, they still light the medium, and what lies behind is composited by coverage |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -31,6 +32,26 @@ pub struct RenderSettings {
     pub lattice: Option<usize>,
     /// Whether single scattering, too, comes from photons (for the lab).
     pub photons_only: bool,
+    /// Whether the camera sees environments.
+    #[serde(skip_serializing_if = "Background::is_visible")]
+    pub background: Background,
+}
+
+/// What the camera sees of environments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Background {
+    /// Their light, through the medium.
+    #[default]
+    Visible,
+    /// Nothing: another image goes there.
+    Holdout,
+}
+
+impl Background {
+    fn is_visible(&self) -> bool {
+        *self == Self::Visible
+    }
 }
 
 impl RenderSettings {
@@ -42,6 +63,7 @@ impl RenderSettings {
             "light_samples",
             "gather",
             "lattice",
+            "background",
             "photons_only",
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
@@ -59,6 +81,7 @@ impl RenderSettings {
             gather,
             lattice: lattice.map(|cells| cells as usize),
             photons_only,
+            background: table.choose("background", &BACKGROUNDS)?.unwrap_or_default(),
         })
     }
 }
@@ -66,6 +89,9 @@ impl RenderSettings {
 /// `None` stands for the plan's own choice.
 const GATHERS: [(&str, Option<Gather>); 3] =
     [("auto", None), ("knn", Some(Gather::Knn)), ("lattice", Some(Gather::Lattice))];
+
+const BACKGROUNDS: [(&str, Background); 2] =
+    [("visible", Background::Visible), ("holdout", Background::Holdout)];
 
 fn read_count(table: &Table, key: &str, default: u64) -> Result<usize, Problem> {
     let count = table.get_or(key, default)?;
