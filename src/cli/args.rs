@@ -265,7 +265,7 @@ pub enum ExtraLayer {
     /// infinite where there is none
     Depth,
     /// light.NAME or light.NUMBER: the image of each light alone, by single and multiple scattering and seen directly; light.medium
-    /// of a fire. Takes as long a light as the whole image without
+    /// of a fire. Each is gathered by itself: up to as long a light as for all
     Lights,
 }
 

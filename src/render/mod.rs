@@ -63,7 +63,7 @@ pub struct RenderOptions {
 /// Layers that cost something to find.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CostlyLayers {
-    /// How deep pixels look: a tenth of the time for rays.
+    /// How deep pixels look.
     pub depths: bool,
     /// The image of each light, by the name that the scene gives it: each is gathered by itself, from its own of the same photons, and
     /// the film is their sum.
