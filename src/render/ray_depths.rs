@@ -91,7 +91,9 @@ fn sampled_scattering(
     let Some(by_transmittance) = ByTransmittance::new(profile, span) else { return sums };
     let share = by_transmittance.opacity() / STRATA as f64;
     for stratum in 0..STRATA {
-        let u = (stratum as f64 + phase) / STRATA as f64;
+        // Looked at from both ends in turn: what one stratum reads too far, the next reads too near.
+        let within = if stratum % 2 == 0 { phase } else { 1.0 - phase };
+        let u = (stratum as f64 + within) / STRATA as f64;
         // Extinction in a grid is grey: there is no channel to pick.
         let distance = by_transmittance.sample_distance(u, 0.0);
         let weight = share * mean_channel(medium.albedo_at(ray.at(distance)));
