@@ -12,7 +12,7 @@
 use std::path::Path;
 use std::thread;
 
-use photonvdb::film::{ExtraLayers, Film, Pixel, RenderMetadata, write_exr, write_preview_png};
+use photonvdb::film::{ExrOptions, Film, Pixel, RenderMetadata, write_exr, write_preview_png};
 use photonvdb::math::{DVec3, Ray, Rgb, Stream, uniform};
 use photonvdb::render::{LightReader, LitScene, Unobserved};
 use photonvdb::scene::{Overrides, Scene};
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all("output")?;
     let (image, preview) =
         (Path::new("output/host_renderer.exr"), Path::new("output/host_renderer.png"));
-    write_exr(image, &film, &ExtraLayers::default(), &RenderMetadata::new())?;
+    write_exr(image, &film, &ExrOptions::default(), &RenderMetadata::new())?;
     write_preview_png(preview, &film, None)?;
     println!("wrote {} and {}", image.display(), preview.display());
     Ok(())

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use photonvdb::film::{ExtraLayers, RenderMetadata, write_exr, write_preview_png};
+use photonvdb::film::{ExrOptions, RenderMetadata, write_exr, write_preview_png};
 use photonvdb::medium::vdb::{VdbFile, VolumeSource};
 use photonvdb::render::{RenderOptions, Unobserved, render};
 use photonvdb::scene::{Overrides, Scene};
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     std::fs::create_dir_all("output")?;
     let (image, preview) = (Path::new("output/vdb_smoke.exr"), Path::new("output/vdb_smoke.png"));
-    write_exr(image, &rendering.film, &ExtraLayers::default(), &RenderMetadata::new())?;
+    write_exr(image, &rendering.film, &ExrOptions::default(), &RenderMetadata::new())?;
     write_preview_png(preview, &rendering.film, None)?;
     println!("wrote {} and {}", image.display(), preview.display());
     Ok(())

@@ -81,6 +81,48 @@ fn a_calibrated_divisor_is_reported() {
     work.run("render fog.toml -o c.exr --k 1 --divisor calibrated").fails_with("at least 2");
 }
 
+/// What a compositor asks for, through the binary: names of channels, their types, and lights by the names of the scene.
+#[test]
+fn layers_are_written_as_asked() {
+    let work = Workspace::new();
+    let text = fs::read_to_string(work.path("fog.toml")).unwrap();
+    let sky = "[[light]]\nkind = \"environment\"\nradiance = 0.5\n";
+    let named = text.replace("kind = \"point\"", "name = \"key\"\nkind = \"point\"");
+    fs::write(work.path("lit.toml"), named + sky).unwrap();
+    let run = work.run("render lit.toml -o lit.exr --half --holdout --layers depth,lights,alpha");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let part = describe_exr(&work.path("lit.exr")).unwrap().parts.remove(0);
+    let kinds: Vec<(&str, &str)> =
+        part.channels.iter().map(|(name, kind)| (name.as_str(), *kind)).collect();
+    for channel in [
+        ("A", "half"),
+        ("AR", "half"),
+        ("R", "half"),
+        ("Z", "float"),
+        ("scatter.Z", "float"),
+        ("light.key.G", "half"),
+        ("light.1.B", "half"),
+        ("transmittance.R", "half"),
+    ] {
+        assert!(kinds.contains(&channel), "{channel:?} {kinds:?}");
+    }
+    // The corner sees nothing but the background, which is held out.
+    assert_eq!(read_rgb(&work.path("lit.exr")).unwrap().pixels[0], [0.0; 3]);
+    let background = |name: &str| {
+        let part = describe_exr(&work.path(name)).unwrap().parts.remove(0);
+        part.attributes.into_iter().find(|(name, _)| name == "photonvdb:render.background")
+    };
+    assert_eq!(background("lit.exr").unwrap().1, "holdout");
+    work.run("render lit.toml -o lit.exr");
+    assert_eq!(background("lit.exr"), None);
+    assert_eq!(read_rgb(&work.path("lit.exr")).unwrap().pixels[0], [0.5; 3]);
+    for name in ["medium", "1", "a.b", "", "no space"] {
+        let text = fs::read_to_string(work.path("lit.toml")).unwrap();
+        fs::write(work.path("bad.toml"), text.replace("\"key\"", &format!("{name:?}"))).unwrap();
+        work.run("render bad.toml -o bad.exr").fails_with("light[0].name");
+    }
+}
+
 #[test]
 fn the_image_depends_on_the_seed_alone() {
     let work = Workspace::new();
@@ -166,7 +208,7 @@ fn wrong_flags_say_what_would_be_right() {
         ("render fog.toml -o fog.exr --divisor k-2", "k-1/2"),
         ("render fog.toml -o fog.exr --emission chaotic", "stratified"),
         ("render fog.toml -o fog.exr --resolution 640", "WIDTHxHEIGHT"),
-        ("render fog.toml -o fog.exr --layers depth", "kernel_radius"),
+        ("render fog.toml -o fog.exr --layers normals", "kernel_radius"),
         ("render fog.toml -o fog.exr --threads 0", "1..=1024"),
         ("render fog.toml -o fog.exr --k 1", "estimate.k"),
         ("render fog.toml -o fog.exr --foton 3", "--photons"),

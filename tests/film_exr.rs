@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use photonvdb::film::{
-    ExtraLayers, Film, FilmError, Pixel, RenderMetadata, RgbImage, describe_exr, read_rgb,
+    ExrOptions, Film, FilmError, Pixel, RenderMetadata, RgbImage, describe_exr, read_rgb,
     read_variance, write_exr,
 };
 use photonvdb::math::Rgb;
@@ -45,7 +45,7 @@ fn radiance_comes_back_bit_for_bit() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
     let film = gradient(37, 35);
-    write_exr(&path, &film, &ExtraLayers::default(), &metadata()).unwrap();
+    write_exr(&path, &film, &ExrOptions::default(), &metadata()).unwrap();
     let image = read_rgb(&path).unwrap();
     assert_eq!(image, RgbImage::from(&film));
     assert_eq!(image.pixels[40], [41.125, 42.25, 47.5]);
@@ -57,7 +57,12 @@ fn layers_hold_the_parts_of_the_image() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
     let film = gradient(20, 18);
-    let extra = ExtraLayers { photon_count: true, kernel_radius: true, variance: true };
+    let extra = ExrOptions {
+        photon_count: true,
+        kernel_radius: true,
+        variance: true,
+        ..ExrOptions::default()
+    };
     write_exr(&path, &film, &extra, &metadata()).unwrap();
 
     let image = read_all_flat_layers_from_file(&path).unwrap();
@@ -84,7 +89,7 @@ fn layers_hold_the_parts_of_the_image() {
     let variance = read_variance(&path).unwrap().unwrap();
     assert_eq!((variance.width, variance.height), (20, 18));
     assert!(variance.pixels.iter().all(|pixel| *pixel == [0.5, 0.0625, 0.0]));
-    write_exr(&path, &film, &ExtraLayers::default(), &metadata()).unwrap();
+    write_exr(&path, &film, &ExrOptions::default(), &metadata()).unwrap();
     assert_eq!(read_variance(&path).unwrap(), None);
 }
 
@@ -92,7 +97,7 @@ fn layers_hold_the_parts_of_the_image() {
 fn description_lists_layers_and_metadata() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
-    let extra = ExtraLayers { photon_count: true, ..ExtraLayers::default() };
+    let extra = ExrOptions { photon_count: true, ..ExrOptions::default() };
     write_exr(&path, &gradient(8, 4), &extra, &metadata()).unwrap();
 
     let description = describe_exr(&path).unwrap();
@@ -119,7 +124,7 @@ fn equal_films_make_equal_bytes() {
         let path = directory.path().join(name);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            write_exr(&path, &gradient(64, 100), &ExtraLayers::default(), &metadata()).unwrap();
+            write_exr(&path, &gradient(64, 100), &ExrOptions::default(), &metadata()).unwrap();
         });
         fs::read(path).unwrap()
     };
@@ -194,7 +199,7 @@ fn survive(path: &Path) {
 fn truncated_files_are_errors() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
-    write_exr(&path, &gradient(33, 40), &ExtraLayers::default(), &metadata()).unwrap();
+    write_exr(&path, &gradient(33, 40), &ExrOptions::default(), &metadata()).unwrap();
     let bytes = fs::read(&path).unwrap();
     for length in (0..bytes.len()).step_by(97) {
         fs::write(&path, &bytes[..length]).unwrap();
@@ -207,7 +212,7 @@ fn truncated_files_are_errors() {
 fn damaged_bytes_never_panic() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("image.exr");
-    write_exr(&path, &gradient(33, 40), &ExtraLayers::default(), &metadata()).unwrap();
+    write_exr(&path, &gradient(33, 40), &ExrOptions::default(), &metadata()).unwrap();
     let bytes = fs::read(&path).unwrap();
     for index in 0..bytes.len().min(1500) {
         for value in [0x00, 0x7f, 0xff, bytes[index] ^ 1] {
@@ -248,5 +253,51 @@ fn huge_counters_of_dwa_chunks_are_refused() {
         damaged[place..place + 8].copy_from_slice(&(1_u64 << 52).to_le_bytes());
         fs::write(&path, &damaged).unwrap();
         assert!(matches!(read_rgb(&path), Err(FilmError::Damaged { .. })), "counter {counter}");
+    }
+}
+
+/// Every layer under the name that it is looked for by; halves where colours are asked for as halves.
+#[test]
+fn layers_of_lights_depths_and_halves() {
+    use exr::prelude::*;
+    use photonvdb::film::PixelDepths;
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("image.exr");
+    let names = ["key".to_string(), "1".to_string()];
+    let mut film = Film::new(20, 3).with_depths().with_lights(&names);
+    film.pixels = gradient(20, 3).pixels;
+    let depths = PixelDepths {
+        half_distance: 3.0,
+        half_share: 0.5,
+        scatter_distance: 1.25,
+        scatter_weight: 0.25,
+    };
+    film.depths.as_mut().unwrap()[7] = depths;
+    film.lights[0].radiance[7] = photonvdb::math::Rgb::new(0.1, 1e9, -1e9);
+    film.lights[1].radiance[7] = photonvdb::math::Rgb::new(1.0, 2.0, 3.0);
+    for half in [false, true] {
+        let options = ExrOptions { alpha: true, variance: true, half, ..ExrOptions::default() };
+        write_exr(&path, &film, &options, &metadata()).unwrap();
+        let image = read_all_flat_layers_from_file(&path).unwrap();
+        let channels = &image.layer_data[0].channel_data.list;
+        let found: Vec<String> = channels.iter().map(|channel| channel.name.to_string()).collect();
+        let mut sorted = found.clone();
+        sorted.sort();
+        assert_eq!(found, sorted);
+        let sample = |name: &str| {
+            let channel = channels.iter().find(|channel| channel.name.eq(name)).unwrap();
+            let is_half = matches!(channel.sample_data, FlatSamples::F16(_));
+            let measured = ["Z", "scatter.Z", "sample_count"].contains(&name);
+            assert_eq!(is_half, half && !measured && !name.starts_with("variance"), "{name}");
+            channel.sample_data.value_by_flat_index(7).to_f32()
+        };
+        assert_eq!([sample("AR"), sample("AG"), sample("AB")], [0.25, 0.5, 0.75]);
+        assert_eq!([sample("Z"), sample("scatter.Z")], [6.0, 5.0]);
+        assert_eq!(["R", "G", "B"].map(|c| sample(&format!("light.1.{c}"))), [1.0, 2.0, 3.0]);
+        assert_eq!([sample("variance.R"), sample("sample_count")], [0.5, 64.0]);
+        let largest = if half { 65504.0 } else { 1e9 };
+        assert!((sample("light.key.R") - 0.1).abs() < if half { 3e-5 } else { 1e-8 });
+        assert_eq!([sample("light.key.G"), sample("light.key.B")], [largest, -largest]);
+        assert_eq!(read_rgb(&path).unwrap().pixels[7], [8.125, 9.25, 14.5]);
     }
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use photonvdb::film::ExtraLayers;
+use photonvdb::film::ExrOptions;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::{Gather, RenderOptions};
+use photonvdb::render::{CostlyLayers, Gather, RenderOptions};
 use photonvdb::scene::{Overrides, Scene};
 
 use super::bias::args::BiasArguments;
@@ -50,6 +50,10 @@ Examples:
       A quick draft.
   photonvdb render fog.toml -o fog.exr --target-error 0.02
       As many passes as it takes to be within 2 %, noise and bias; --time-budget 60 for the best of a minute.
+  photonvdb render smoke.toml -o smoke.exr --holdout --half --layers depth,lights
+      For compositing: no background, depths, and a layer a light.
+  photonvdb render fog.toml -o fog.exr --passes 1000 --checkpoint fog.ckpt
+      Kept after every pass; once it was killed, the same with --resume fog.ckpt goes on to the same image.
   photonvdb render fog.toml -o fog.exr --gather knn --k 100 --divisor calibrated
       From the photon map: the 100 nearest photons of each point.
   photonvdb render fog.toml -o fog.exr --reference truth.exr --report fog.json
@@ -115,7 +119,7 @@ pub struct RenderArguments {
     /// Scene file, .toml or .json
     pub scene: PathBuf,
 
-    /// Image to write: linear 32-bit OpenEXR with all layers
+    /// Image to write: linear OpenEXR with all layers
     #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr_name)]
     pub output: PathBuf,
 
@@ -183,6 +187,15 @@ pub struct RenderArguments {
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<[u64; 2]>,
 
+    /// Leave out of the image what the camera sees of environments, which still light the medium: over any background the image is
+    /// then composited by its alpha [default: render.background of the scene]
+    #[arg(long)]
+    pub holdout: bool,
+
+    /// Write colours and alpha as 16-bit floats; depths, variance and counts stay in 32 bits
+    #[arg(long)]
+    pub half: bool,
+
     /// More layers to write, separated by commas
     #[arg(long, value_name = "LAYERS", value_delimiter = ',')]
     pub layers: Vec<ExtraLayer>,
@@ -190,6 +203,16 @@ pub struct RenderArguments {
     /// Take single scattering from photons, too, instead of sampling it towards the lights
     #[arg(long)]
     pub photons_only: bool,
+
+    /// File to keep the render's state in, written after every pass: a render that is killed goes on from there with --resume
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+
+    /// Checkpoint to go on from, of the same scene and settings, to the same image as without a break; may be the file of
+    /// --checkpoint. With more --passes, or another --target-error, passes are added. A --time-budget counts the time already
+    /// spent
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
 
     /// Image to compare with, of the same size; the figures go to stderr and to the report
     #[arg(long, value_name = "REF.exr")]
@@ -246,6 +269,14 @@ pub enum ExtraLayer {
     KernelRadius,
     /// Square of the radiance's standard error, from how passes differ, and the number of rays
     Variance,
+    /// Alpha a channel, as AR, AG and AB
+    Alpha,
+    /// Z, the distance from the camera at which half of the light is lost, and scatter.Z, the mean one of the first scattering;
+    /// infinite where there is none
+    Depth,
+    /// light.NAME or light.NUMBER: the image of each light alone, by single and multiple scattering and seen directly; light.medium
+    /// of a fire. Each is gathered by itself: up to as long a light as for all
+    Lights,
 }
 
 /// `photonvdb inspect`
@@ -342,6 +373,7 @@ impl RenderArguments {
             filter: self.filter.clone(),
             samples_per_pixel: self.samples,
             photons_only: self.photons_only.then_some(true),
+            background: self.holdout.then(|| "holdout".to_string()),
             sdf_to_fog: self.sdf_to_fog.then_some(true),
             max_volume_memory: self.volume.max_volume_memory,
             strict: self.strict,
@@ -357,15 +389,21 @@ impl RenderArguments {
             Gather::Bounce => 4,
             _ => 1,
         });
-        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget }
+        let layers = CostlyLayers {
+            depths: self.layers.contains(&ExtraLayer::Depth),
+            lights: self.layers.contains(&ExtraLayer::Lights),
+        };
+        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget, layers }
     }
 
-    /// The layers asked for beyond the usual.
-    pub fn extra_layers(&self) -> ExtraLayers {
-        ExtraLayers {
+    /// What the image's file holds.
+    pub fn exr_options(&self) -> ExrOptions {
+        ExrOptions {
             photon_count: self.layers.contains(&ExtraLayer::PhotonCount),
             kernel_radius: self.layers.contains(&ExtraLayer::KernelRadius),
             variance: self.layers.contains(&ExtraLayer::Variance),
+            alpha: self.layers.contains(&ExtraLayer::Alpha),
+            half: self.half,
         }
     }
 }

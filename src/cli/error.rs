@@ -8,7 +8,7 @@ use photonvdb::film::FilmError;
 use photonvdb::lab::{LabError, SceneComparisonError, SweepError};
 use photonvdb::medium::vdb::{CropError, VdbError, VdbWriteError};
 use photonvdb::reference::ReferenceError;
-use photonvdb::render::RenderError;
+use photonvdb::render::{CheckpointError, RenderError};
 use photonvdb::scene::SceneError;
 use photonvdb::validate::ValidateError;
 use thiserror::Error;
@@ -40,6 +40,8 @@ pub enum CliError {
     RenameMany { count: usize },
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     #[error(transparent)]
     Reference(#[from] ReferenceError),
     #[error(transparent)]

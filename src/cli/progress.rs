@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{PoisonError, RwLock};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use photonvdb::files::WriteFailure;
 use photonvdb::render::{ErrorEstimate, Observer, RenderOptions, Stage};
 
 /// Shows the stages of a render and passes Ctrl-C on to it.
@@ -19,10 +20,15 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For a render that ends by its options, or once `interrupted` is true.
-    pub fn new(options: &RenderOptions, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+    /// For a render that goes on after so many passes, and ends by its options, or once `interrupted` is true.
+    pub fn new(
+        options: &RenderOptions,
+        passes_done: u32,
+        quiet: bool,
+        interrupted: Arc<AtomicBool>,
+    ) -> Self {
         let bar = RwLock::new(ProgressBar::hidden());
-        let (pass, passes) = (AtomicU32::new(0), options.passes);
+        let (pass, passes) = (AtomicU32::new(passes_done + 1), options.passes);
         Self { bar, pass, passes, error: RwLock::new(None), quiet, interrupted }
     }
 
@@ -55,9 +61,6 @@ impl Progress {
 
 impl Observer for Progress {
     fn stage_started(&self, stage: Stage, total: u64) {
-        if stage == Stage::Trace {
-            self.pass.fetch_add(1, Ordering::Relaxed);
-        }
         *self.bar.write().unwrap_or_else(PoisonError::into_inner) = self.start_bar(stage, total);
     }
 
@@ -70,7 +73,13 @@ impl Observer for Progress {
     }
 
     fn pass_finished(&self, _: u32, error: Option<ErrorEstimate>) {
+        self.pass.fetch_add(1, Ordering::Relaxed);
         *self.error.write().unwrap_or_else(PoisonError::into_inner) = error;
+    }
+
+    fn checkpoint_failed(&self, failure: &WriteFailure) {
+        // What was asked for did not happen: that is said even where quiet is asked for.
+        eprintln!("warning: the pass is not kept: {failure}");
     }
 
     fn cancelled(&self) -> bool {

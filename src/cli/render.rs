@@ -6,7 +6,9 @@ use std::time::Instant;
 use photonvdb::film::{
     FilmError, RgbImage, check_writable, compare, read_rgb, write_exr, write_preview_png,
 };
-use photonvdb::render::{Observer, Rendering, photons_per_pass, render};
+use photonvdb::render::{
+    Checkpoints, Observer, RenderOptions, RenderState, Rendering, photons_per_pass, render_from,
+};
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
@@ -29,6 +31,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let scene = load_scene(arguments)?;
     let reference = load_reference(arguments, &scene)?;
     let options = arguments.options(&scene);
+    let resumed = load_checkpoint(arguments, &scene, &options)?;
     let plan = Plan { photons: photons_per_pass(&scene, &options), ..Plan::of(&scene) };
     let interrupted = interrupt::catch()?;
     summary.plan(&scene, &plan);
@@ -36,15 +39,22 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
 
     let pool = thread_pool(arguments.threads)?;
     let settings = Settings::of(&arguments.scene, &scene, &options, pool.current_num_threads());
-    let progress = Progress::new(&options, arguments.quiet, interrupted);
-    let rendering = pool.install(|| render(&scene, &options, &progress))?;
+    let passes_before = resumed.as_ref().map_or(0, RenderState::passes_done);
+    let seconds_before = resumed.as_ref().map_or(0.0, RenderState::seconds);
+    if resumed.is_some() {
+        summary.resumed(passes_before, seconds_before);
+    }
+    let progress = Progress::new(&options, passes_before, arguments.quiet, interrupted);
+    let save_to = arguments.checkpoint.as_deref();
+    let checkpoints = Checkpoints { resume_from: resumed, save_to };
+    let rendering = pool.install(|| render_from(&scene, &options, &progress, checkpoints))?;
 
     let made = &rendering.report;
     if progress.cancelled() {
         summary.interrupted(made.passes_done);
     }
     let write_started = Instant::now();
-    pool.install(|| write_images(arguments, &settings, &rendering))?;
+    pool.install(|| write_images(arguments, &scene, &settings, &rendering))?;
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         plan,
@@ -73,7 +83,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         let error = compare(&RgbImage::from(&rendering.film), &reference)?;
         report.comparison = Some(Comparison::new(path, error));
     }
-    report.seconds.total = started.elapsed().as_secs_f64();
+    report.seconds.total = seconds_before + started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {
         write_json(path, &report)?;
     }
@@ -88,12 +98,26 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
 
 fn check_outputs(arguments: &RenderArguments) -> Result<(), FilmError> {
     let report = arguments.report.as_deref().filter(|path| !is_stdout(path));
-    let files = [Some(arguments.output.as_path()), arguments.preview.as_deref(), report];
+    let files = [
+        Some(arguments.output.as_path()),
+        arguments.preview.as_deref(),
+        arguments.checkpoint.as_deref(),
+        report,
+    ];
     files.into_iter().flatten().try_for_each(check_writable)
 }
 
 fn load_scene(arguments: &RenderArguments) -> Result<Scene, CliError> {
     Ok(Scene::load_with(&arguments.scene, &arguments.overrides())?)
+}
+
+fn load_checkpoint(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    options: &RenderOptions,
+) -> Result<Option<RenderState>, CliError> {
+    let path = arguments.resume.as_deref();
+    Ok(path.map(|path| RenderState::load(path, scene, options)).transpose()?)
 }
 
 fn load_reference<'a>(
@@ -112,12 +136,13 @@ fn load_reference<'a>(
 
 fn write_images(
     arguments: &RenderArguments,
+    scene: &Scene,
     settings: &Settings,
     rendering: &Rendering,
 ) -> Result<(), FilmError> {
     let made = &rendering.report;
-    let metadata = settings.metadata(made.emitted_count, made.passes_done);
-    write_exr(&arguments.output, &rendering.film, &arguments.extra_layers(), &metadata)?;
+    let metadata = settings.metadata(scene, made.emitted_count, made.passes_done);
+    write_exr(&arguments.output, &rendering.film, &arguments.exr_options(), &metadata)?;
     match &arguments.preview {
         Some(path) => write_preview_png(path, &rendering.film, None),
         None => Ok(()),

@@ -89,7 +89,7 @@ pub struct Power {
     pub resampled: [f64; 3],
 }
 
-/// Wall-clock time of each step \[s\].
+/// Wall-clock time of each step \[s\], with that of the runs before where a render was resumed.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Seconds {
     pub load: f64,

@@ -6,7 +6,6 @@ use photonvdb::film::RenderMetadata;
 use photonvdb::render::RenderOptions;
 use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use serde::Serialize;
-use serde_json::Value;
 
 /// Everything that determines the image, and the number of threads, which does not.
 #[derive(Clone, Debug, Serialize)]
@@ -53,24 +52,20 @@ impl Settings {
 
     /// The settings as attributes of the image, named as in the scene file (`photons.seed`). The number
     /// of threads stays out: images are the same for any.
-    pub fn metadata(&self, photons_emitted: u64, passes_done: u32) -> RenderMetadata {
+    pub fn metadata(
+        &self,
+        scene: &Scene,
+        photons_emitted: u64,
+        passes_done: u32,
+    ) -> RenderMetadata {
         let mut metadata = RenderMetadata::new();
         metadata.set("version", env!("CARGO_PKG_VERSION"));
         metadata.set("scene", &self.scene);
         metadata.set("scene_hash", &self.scene_hash);
         metadata.set("passes", passes_done);
         metadata.set("photons_emitted", photons_emitted);
-        metadata.set("camera.resolution", format!("{}x{}", self.resolution[0], self.resolution[1]));
-        for (section, values) in [
-            ("photons", serde_json::to_value(self.photons)),
-            ("estimate", serde_json::to_value(self.estimate)),
-            ("render", serde_json::to_value(self.render)),
-        ] {
-            let Ok(Value::Object(values)) = values else { continue };
-            for (key, value) in values {
-                let text = value.as_str().map_or_else(|| value.to_string(), str::to_string);
-                metadata.set(&format!("{section}.{key}"), text);
-            }
+        for (name, value) in scene.settings() {
+            metadata.set(&name, value);
         }
         metadata
     }

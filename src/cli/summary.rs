@@ -21,6 +21,11 @@ impl Summary {
         self.line(&plan.to_string());
     }
 
+    /// What a checkpoint holds.
+    pub fn resumed(self, passes: u32, seconds: f64) {
+        self.line(&format!("going on after {passes} passes and {seconds:.1} s"));
+    }
+
     /// That the render was asked to end.
     pub fn interrupted(self, passes_done: u32) {
         self.line(&format!("ended after pass {passes_done}"));
@@ -96,7 +101,8 @@ impl Summary {
     /// What was written.
     pub fn written(self, arguments: &RenderArguments) {
         let report = arguments.report.as_ref().filter(|path| !is_stdout(path));
-        let files = [Some(&arguments.output), arguments.preview.as_ref(), report];
+        let checkpoint = arguments.checkpoint.as_ref();
+        let files = [Some(&arguments.output), arguments.preview.as_ref(), checkpoint, report];
         let names: Vec<_> =
             files.into_iter().flatten().map(|path| path.display().to_string()).collect();
         self.line(&format!("wrote {}", names.join(", ")));

@@ -19,7 +19,9 @@ pub use guide::Guide;
 pub use sobol::Sobol;
 pub use strata::{Interval, MAX_DIMENSIONS, Strata};
 
-use crate::light::Light;
+use std::ops::Range;
+
+use crate::light::{Light, LightChoice};
 use crate::math::{DVec2, Random, Ray, Rgb, Stream, uniform};
 use crate::medium::{BoostedQuantile, Medium};
 
@@ -83,12 +85,15 @@ pub struct Emission<'a> {
     count: u64,
     photons_per_ray: u64,
     lights: Vec<LightShare<'a>>,
+    choice: LightChoice,
 }
 
 /// The rays of one light: `first..first + count`.
 #[derive(Debug)]
 struct LightShare<'a> {
     emitter: Emitter<'a>,
+    /// Whose they are.
+    source: LightChoice,
     first: u64,
     count: u64,
     sampler: PrimarySampler,
@@ -129,17 +134,22 @@ impl<'a> Emission<'a> {
         settings: EmissionSettings,
     ) -> Self {
         let EmissionSettings { kind, count, photons_per_ray, seed } = settings;
-        let emitters: Vec<Emitter> = lights
+        let of_light = |(index, light): (usize, &'a Light)| {
+            (LightChoice::Light(index), Emitter::new(light, &medium.bounds))
+        };
+        let of_medium = Emitter::of_medium(medium).map(|emitter| (LightChoice::Medium, emitter));
+        let emitters: Vec<(LightChoice, Emitter)> = lights
             .iter()
-            .map(|light| Emitter::new(light, &medium.bounds))
-            .chain(Emitter::of_medium(medium))
-            .filter(|emitter| emitter.power_estimate() > 0.0)
+            .enumerate()
+            .map(of_light)
+            .chain(of_medium)
+            .filter(|(_, emitter)| emitter.power_estimate() > 0.0)
             .collect();
-        let powers: Vec<f64> = emitters.iter().map(Emitter::power_estimate).collect();
+        let powers: Vec<f64> = emitters.iter().map(|(_, e)| e.power_estimate()).collect();
         let rays = count.div_ceil(photons_per_ray);
         let mut first = 0;
         let mut lights = Vec::new();
-        for (index, (emitter, count)) in
+        for (index, ((source, emitter), count)) in
             emitters.into_iter().zip(share_out(rays, &powers)).enumerate()
         {
             let sampler = match kind {
@@ -155,10 +165,19 @@ impl<'a> Emission<'a> {
                 EmissionKind::Sobol => PrimarySampler::Sobol(Sobol::new(seed, index as u64)),
             };
             let (guide, collision_boost) = guide_of(&emitter, &opacity, index as u64);
-            lights.push(LightShare { emitter, first, count, sampler, guide, collision_boost });
+            lights.push(LightShare {
+                emitter,
+                source,
+                first,
+                count,
+                sampler,
+                guide,
+                collision_boost,
+            });
             first += count;
         }
-        Self { seed, count: first * photons_per_ray, photons_per_ray, lights }
+        let (count, choice) = (first * photons_per_ray, LightChoice::All);
+        Self { seed, count, photons_per_ray, lights, choice }
     }
 
     /// Makes the photons those of another seed, everything else the same.
@@ -169,6 +188,27 @@ impl<'a> Emission<'a> {
                 *sobol = Sobol::new(seed, index as u64);
             }
         }
+    }
+
+    /// Looks at the photons of some light alone, which stay what they are among all.
+    pub fn choose(&mut self, choice: LightChoice) {
+        self.choice = choice;
+    }
+
+    /// The rays of the light looked at, by number: all of them at first. Of a ray's photons, `photons_per_ray` each, the first has the
+    /// ray's number times that.
+    pub fn rays(&self) -> Range<u64> {
+        if self.choice == LightChoice::All {
+            return 0..self.count / self.photons_per_ray;
+        }
+        let light = self.lights.iter().find(|light| light.source == self.choice);
+        light.map_or(0..0, |light| light.first..light.first + light.count)
+    }
+
+    /// Photons of the light looked at.
+    pub fn chosen_count(&self) -> u64 {
+        let rays = self.rays();
+        (rays.end - rays.start) * self.photons_per_ray
     }
 
     /// Photons of the pass: the count asked for, or 0 where no light reaches the bounds.

@@ -4,10 +4,18 @@ use super::{Film, Pixel};
 use crate::math::Rgb;
 
 impl Film {
-    /// Makes this, the mean of `count` films of the same size, the mean of one more. Where `count` is 1 or more, the pixels'
+    /// Makes this, the mean of `count` films of the same size and layers, the mean of one more. Where `count` is 1 or more, the pixels'
     /// `variance` becomes that of the mean, estimated from how the films differ.
     pub fn average_in(&mut self, film: &Film, count: u32) {
         let count = f64::from(count);
+        let share = 1.0 / (count + 1.0);
+        for (means, depths) in self.depths.iter_mut().zip(&film.depths) {
+            means.iter_mut().zip(depths).for_each(|(mean, d)| mean.move_towards(d, share));
+        }
+        for (means, light) in self.lights.iter_mut().zip(&film.lights) {
+            let pixels = means.radiance.iter_mut().zip(&light.radiance);
+            pixels.for_each(|(mean, radiance)| *mean += (*radiance - *mean) * share);
+        }
         self.pixels.iter_mut().zip(&film.pixels).for_each(|(mean, pixel)| mean.add(pixel, count));
     }
 }

@@ -1,4 +1,4 @@
-//! Writing a film as OpenEXR: one part, 32-bit floats, lossless ZIP in blocks of 16 lines.
+//! Writing a film as OpenEXR: one part, 32-bit floats or halves, lossless ZIP in blocks of 16 lines.
 //!
 //! Equal films and metadata make equal bytes, for any number of threads.
 
@@ -13,26 +13,29 @@ use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, Chromaticities, LineOrder, SampleType, Text};
 use exr::meta::header::Header;
+use half::f16;
 
 use super::layers::{FilmChannel, channels};
 use super::metadata::utf8_text;
-use super::{ExtraLayers, Film, FilmError, RenderMetadata, write_beside};
+use super::{ExrOptions, Film, FilmError, RenderMetadata, write_beside};
 
 /// Writes `film` to `path` in place of what was there, with `metadata` as text attributes.
 ///
 /// Channels: `R, G, B` the radiance, premultiplied by nature; `A` the coverage; `single_scatter`,
-/// `multiple_scatter`, `emission` and `transmittance` as `.R .G .B`; and the `extra` layers.
+/// `multiple_scatter`, `emission` and `transmittance` as `.R .G .B`; what `options` ask for; where the film has depths `Z`, the distance
+/// at which half of the light is lost, and `scatter.Z`, the mean one of the first scattering; and `light.NAME` as `.R .G .B` of its
+/// lights.
 ///
 /// # Errors
 /// [`FilmError::Write`]; the old file, if any, is then untouched.
 pub fn write_exr(
     path: &Path,
     film: &Film,
-    extra: &ExtraLayers,
+    options: &ExrOptions,
     metadata: &RenderMetadata,
 ) -> Result<(), FilmError> {
     write_beside(path, |file| {
-        write_part(file, film, &channels(extra), metadata).map_err(into_io_error)?;
+        write_part(file, film, &channels(film, options), metadata).map_err(into_io_error)?;
         sort_attributes(file)
     })
 }
@@ -49,20 +52,29 @@ fn write_part(
         let blocks = meta.collect_ordered_block_data(|block| {
             UncompressedBlock::collect_block_data_from_lines(&part.channels, block, |line| {
                 let Vec2(left, row) = line.location.position;
-                let pixels = &film.pixels[row * film.width + left..];
-                let value = channels[line.location.channel].value;
+                let first = row * film.width + left;
+                let FilmChannel { value, half, .. } = &channels[line.location.channel];
                 // The line lies in memory and has the size asked for: writing to it cannot fail.
-                let _ = line.write_samples(|column| value(&pixels[column]) as f32);
+                let _ = match half {
+                    true => line.write_samples(|column| half_of(value(first + column))),
+                    false => line.write_samples(|column| value(first + column) as f32),
+                };
             })
         });
         writer.on_progress(|_| ()).compress_all_blocks_parallel(&meta, blocks)
     })
 }
 
+/// The nearest half; what is too large becomes the largest.
+fn half_of(value: f64) -> f16 {
+    let largest = f64::from(f16::MAX);
+    f16::from_f64(value.clamp(-largest, largest))
+}
+
 fn header(film: &Film, channels: &[FilmChannel], metadata: &RenderMetadata) -> Header {
     let descriptions = channels.iter().map(|channel| ChannelDescription {
-        name: Text::from(channel.name),
-        sample_type: SampleType::F32,
+        name: Text::from(channel.name.as_str()),
+        sample_type: if channel.half { SampleType::F16 } else { SampleType::F32 },
         quantize_linearly: false,
         sampling: Vec2(1, 1),
     });

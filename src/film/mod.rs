@@ -15,6 +15,7 @@ mod exr_read;
 mod exr_write;
 mod layers;
 mod metadata;
+mod pixel_depths;
 mod preview;
 mod rgb_image;
 
@@ -25,8 +26,9 @@ pub use exr_description::{ExrDescription, ExrPart, describe_exr};
 pub use exr_limits::MAX_PIXEL_COUNT;
 pub use exr_read::{read_rgb, read_variance};
 pub use exr_write::write_exr;
-pub use layers::ExtraLayers;
+pub use layers::ExrOptions;
 pub use metadata::RenderMetadata;
+pub use pixel_depths::PixelDepths;
 pub use preview::write_preview_png;
 pub use rgb_image::RgbImage;
 
@@ -41,12 +43,49 @@ pub struct Film {
     pub height: usize,
     /// Row-major pixels.
     pub pixels: Vec<Pixel>,
+    /// How deep each of them looks, where it is asked for.
+    pub depths: Option<Vec<PixelDepths>>,
+    /// The image of each light, where it is asked for: their sum is the radiance of the pixels.
+    pub lights: Vec<LightLayer>,
+}
+
+/// The image of one light, or of several of one name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightLayer {
+    /// Letters, digits, `_` and `-`.
+    pub name: String,
+    /// Light of it, scattered or not, a pixel \[W/(m^2 sr)\].
+    pub radiance: Vec<Rgb>,
 }
 
 impl Film {
     /// A black film of `width` x `height` pixels.
     pub fn new(width: usize, height: usize) -> Self {
-        Self { width, height, pixels: vec![Pixel::default(); width * height] }
+        let pixels = vec![Pixel::default(); width * height];
+        Self { width, height, pixels, depths: None, lights: Vec::new() }
+    }
+
+    /// The same with depths.
+    pub fn with_depths(mut self) -> Self {
+        self.depths = Some(vec![PixelDepths::default(); self.pixels.len()]);
+        self
+    }
+
+    /// The same with a layer for each light of those names.
+    pub fn with_lights(mut self, names: &[String]) -> Self {
+        let layer = |name: &String| LightLayer {
+            name: name.clone(),
+            radiance: vec![Rgb::ZERO; self.pixels.len()],
+        };
+        self.lights = names.iter().map(layer).collect();
+        self
+    }
+
+    /// Makes the film black.
+    pub fn clear(&mut self) {
+        self.pixels.fill(Pixel::default());
+        self.depths.iter_mut().for_each(|depths| depths.fill(PixelDepths::default()));
+        self.lights.iter_mut().for_each(|light| light.radiance.fill(Rgb::ZERO));
     }
 }
 

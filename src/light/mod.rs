@@ -4,11 +4,13 @@
 //! that attenuates.
 
 mod area;
+mod choice;
 mod environment;
 mod punctual;
 mod shadows;
 
 pub use area::{QuadLight, SphereLight};
+pub use choice::LightChoice;
 pub use environment::{DirectionSample, Environment, EnvironmentImage};
 pub use punctual::{DirectionalLight, PointLight, SpotLight};
 pub use shadows::{Shadows, transmittance_to};

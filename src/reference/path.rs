@@ -12,10 +12,10 @@
 //!
 //! All weights are balance heuristics over these ways (see [`segment`](super::segment)): no light makes an infinite variance.
 
-use crate::light::{Environment, Illumination, Light, Shadows};
+use crate::light::{Environment, Illumination, Light, LightChoice, Shadows};
 use crate::math::{DVec3, Random, Ray, Rgb, Span, max_channel, uniform};
 use crate::medium::{Extinction, Flight, Medium, Phase};
-use crate::scene::Scene;
+use crate::scene::{Background, Scene};
 
 use super::aim::Aim;
 use super::equi_angular::EquiAngular;
@@ -102,6 +102,9 @@ pub(crate) struct PathTracer<'a, E> {
     has_environment: bool,
     /// Whether a ray may meet a light that is sampled.
     has_extended: bool,
+    background: Background,
+    /// The light that counts.
+    choice: LightChoice,
     /// For each light, sampling of distances on the current segment.
     towards: Vec<Option<EquiAngular>>,
     /// For each light, the density of all ways that find the last collision over that of the flight.
@@ -119,6 +122,8 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             even_sky: lights.iter().filter_map(even_sky).sum(),
             has_environment: lights.iter().any(is_image),
             has_extended: lights.iter().any(is_extended),
+            background: scene.render.background,
+            choice: LightChoice::All,
             towards: vec![None; lights.len()],
             ways: vec![1.0; lights.len()],
         }
@@ -128,6 +133,20 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     pub(crate) fn with_shadows(mut self, shadows: &'a Shadows) -> Self {
         self.shadows = Some(shadows);
         self
+    }
+
+    /// The same of some of the light.
+    pub(crate) fn with_choice(mut self, choice: LightChoice) -> Self {
+        let chosen = self.lights.iter().enumerate().filter(|(index, _)| choice.has_light(*index));
+        self.even_sky = chosen.filter_map(|(_, light)| even_sky(light)).sum();
+        self.choice = choice;
+        self
+    }
+
+    /// The lights that count, each with its number.
+    fn chosen_lights(&self) -> impl Iterator<Item = (usize, &'a Light)> + use<'a, E> {
+        let choice = self.choice;
+        self.lights.iter().enumerate().filter(move |(index, _)| choice.has_light(*index))
     }
 
     /// An estimate of the light that travels back along a ray.
@@ -255,7 +274,10 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
             Flight::Escape { .. } => span.end,
             Flight::Collision { distance, .. } => distance,
         };
-        let glow = glow(segment, distance, random);
+        let glow = match self.choice.has_medium() {
+            true => glow(segment, distance, random),
+            false => Rgb::ZERO,
+        };
         let end = match flight {
             Flight::Escape { weight } => End::Escape { weight },
             Flight::Collision { weight, .. } => {
@@ -289,8 +311,13 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         random: &mut Random,
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
-        for (light, ways) in self.lights.iter().zip(&self.ways) {
+        for (index, light) in self.chosen_lights() {
+            let ways = self.ways[index];
             let Some((distance, radiance)) = light.seen_along(ray) else { continue };
+            let is_background = phase_density.is_none() && distance.is_infinite();
+            if is_background && self.background == Background::Holdout {
+                continue;
+            }
             // An even sky is the camera's to see; scattered, paths find it where they leave.
             let is_found = phase_density.is_some() && even_sky(light).is_some();
             if radiance == Rgb::ZERO || is_found {
@@ -313,7 +340,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     /// Light of each near light, scattered at one place of the segment drawn towards it.
     fn near_lights(&mut self, segment: &Segment<E>, random: &mut Random) -> Rgb {
         let mut sum = Rgb::ZERO;
-        for (index, light) in self.lights.iter().enumerate() {
+        for (index, light) in self.chosen_lights() {
             let towards = segment.equi_angular(light);
             if let Some(towards) = &towards {
                 sum += self.near_light(segment, (index, light), towards, random);
@@ -362,7 +389,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
         let arriving = Ray::new(place, segment.ray.direction);
         let flight = segment.flight_density(distance, self.extinction.sigma_t(place));
         let mut sum = Rgb::ZERO;
-        for (index, light) in self.lights.iter().enumerate() {
+        for (index, light) in self.chosen_lights() {
             if even_sky(light).is_some() {
                 continue;
             }
@@ -388,7 +415,7 @@ impl<'a, E: Extinction> PathTracer<'a, E> {
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
         let (medium, extinction) = (self.medium, self.extinction);
-        for (index, light) in self.lights.iter().enumerate() {
+        for (index, light) in self.chosen_lights() {
             let aim = peak_of(light, medium).and_then(|peak| Aim::new(arriving.origin, peak));
             let Some(aim) = aim else { continue };
             let ray = Ray::new(arriving.origin, aim.sample_direction(random));

@@ -6,7 +6,7 @@
 //! one pixel of sixteen; its mean square over pixels, less what its own noise adds, gives the bias.
 
 use crate::film::Film;
-use crate::math::mean_channel;
+use crate::math::{Rgb, mean_channel};
 use crate::render::regression::Halves;
 
 /// Pixels whose coordinates are both this modulo [`PROBE_STEP`] are probed.
@@ -18,6 +18,12 @@ const PROBE_STEP: usize = 4;
 /// Whether a pixel is probed for bias.
 pub fn is_probed(x: usize, y: usize) -> bool {
     x % PROBE_STEP == PROBE_OFFSET && y % PROBE_STEP == PROBE_OFFSET
+}
+
+/// How many pixels of an image are probed.
+pub fn probed_count(width: usize, height: usize) -> usize {
+    let along = |size: usize| (size + PROBE_STEP - 1 - PROBE_OFFSET) / PROBE_STEP;
+    along(width) * along(height)
 }
 
 /// The error of an image, as shares of its mean.
@@ -39,23 +45,33 @@ impl ErrorEstimate {
 /// The means of even and of odd passes, and what coarse cells would add in probed pixels.
 #[derive(Clone, Debug)]
 pub struct ErrorProbes {
-    halves: [Film; 2],
-    counts: [u32; 2],
+    /// Mean radiance a pixel of the even and of the odd passes.
+    pub halves: [Vec<Rgb>; 2],
+    /// The multiple scattering in it.
+    pub multiples: [Vec<Rgb>; 2],
+    /// Passes of each.
+    pub counts: [u32; 2],
     /// Sum and sum of squares over passes, a probed pixel.
-    differences: Vec<[f64; 2]>,
+    pub differences: Vec<[f64; 2]>,
 }
 
 impl ErrorProbes {
     /// No pass yet of a film of that size.
     pub fn new(width: usize, height: usize) -> Self {
-        let halves = [Film::new(width, height), Film::new(width, height)];
-        Self { halves, counts: [0; 2], differences: Vec::new() }
+        let black = vec![Rgb::ZERO; width * height];
+        let halves = [black.clone(), black];
+        Self { multiples: halves.clone(), halves, counts: [0; 2], differences: Vec::new() }
     }
 
     /// Adds a pass: its image, and what coarse cells would add to each probed pixel's mean channel.
     pub fn add(&mut self, half: usize, film: &Film, differences: &[f64]) {
-        self.halves[half].average_in(film, self.counts[half]);
         self.counts[half] += 1;
+        let share = 1.0 / f64::from(self.counts[half]);
+        let means = self.halves[half].iter_mut().zip(&mut self.multiples[half]);
+        for ((radiance, multiple), pixel) in means.zip(&film.pixels) {
+            *radiance += (pixel.radiance() - *radiance) * share;
+            *multiple += (pixel.multiple_scatter - *multiple) * share;
+        }
         self.differences.resize(differences.len(), [0.0; 2]);
         for (sum, difference) in self.differences.iter_mut().zip(differences) {
             sum[0] += difference;
@@ -75,33 +91,29 @@ impl ErrorProbes {
         Some(ErrorEstimate { noise: self.noise() / mean, bias: self.bias() / mean })
     }
 
-    /// The means of both halves' passes; `None` until both have one.
-    pub fn halves(&self) -> Option<Halves<'_>> {
-        let [even, odd] = &self.halves;
+    /// What the filter of `film`, the mean of all passes, goes by; `None` until both halves have a pass.
+    pub fn halves<'a>(&'a self, film: &'a Film) -> Option<Halves<'a>> {
         let known = !self.counts.contains(&0);
-        known.then_some(Halves { films: [even, odd], counts: self.counts })
+        let [radiance, multiple] =
+            [&self.halves, &self.multiples].map(|[even, odd]| [&even[..], &odd[..]]);
+        known.then_some(Halves { film, radiance, multiple, counts: self.counts })
     }
 
     /// Mean channel of all pixels and passes.
     pub fn mean(&self) -> f64 {
-        let of_half = |half: &Film| -> f64 {
-            half.pixels.iter().map(|pixel| mean_channel(pixel.radiance())).sum()
-        };
+        let of_half = |half: &[Rgb]| -> f64 { half.iter().copied().map(mean_channel).sum() };
         let [even, odd] = self.counts.map(f64::from);
         let sum = even * of_half(&self.halves[0]) + odd * of_half(&self.halves[1]);
-        sum / ((even + odd) * self.halves[0].pixels.len().max(1) as f64)
+        sum / ((even + odd) * self.halves[0].len().max(1) as f64)
     }
 
     /// Root mean square: of two means of m and n passes, the mean of all has the variance of their difference times
     /// m n / (m + n)^2.
     fn noise(&self) -> f64 {
         let [even, odd] = self.counts.map(f64::from);
-        let pixels = self.halves[0].pixels.iter().zip(&self.halves[1].pixels);
-        let squares = pixels.map(|(a, b)| {
-            let difference = a.radiance() - b.radiance();
-            mean_channel(difference * difference)
-        });
-        let mean = squares.sum::<f64>() / self.halves[0].pixels.len().max(1) as f64;
+        let pixels = self.halves[0].iter().zip(&self.halves[1]);
+        let squares = pixels.map(|(a, b)| mean_channel((*a - *b) * (*a - *b)));
+        let mean = squares.sum::<f64>() / self.halves[0].len().max(1) as f64;
         (mean * even * odd).sqrt() / (even + odd)
     }
 
@@ -148,6 +160,14 @@ mod tests {
             assert!((error.noise / noise - 1.0).abs() < 0.05, "{error:?} {noise}");
             assert!((error.bias / 0.05 - 1.0).abs() < 0.2, "{error:?}");
             assert!((error.total() - error.noise.hypot(error.bias)).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn probed_pixels_are_counted() {
+        for (width, height) in [(1, 9), (2, 2), (5, 6), (24, 16), (31, 33)] {
+            let all = (0..width * height).map(|index| (index % width, index / width));
+            assert_eq!(all.filter(|(x, y)| is_probed(*x, *y)).count(), probed_count(width, height));
         }
     }
 

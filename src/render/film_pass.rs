@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::film::{Film, Pixel};
+use crate::film::{Film, Pixel, PixelDepths};
+use crate::light::LightChoice;
 use crate::math::{DVec2, Random, Rgb, Stream, mean_channel, uniform};
 use crate::medium::Extinction;
 use crate::render::error_estimate::is_probed;
@@ -41,6 +42,10 @@ pub struct FilmPass<'a> {
     pub samples_per_pixel: usize,
     /// Number of the first of them among those of all passes of the half.
     pub first_sample: u64,
+    /// The light looked for.
+    pub choice: LightChoice,
+    /// Whether depths are, too.
+    pub finds_depths: bool,
 }
 
 /// What a pass finds.
@@ -49,6 +54,33 @@ pub struct PassFilm {
     pub film: Film,
     /// What light from coarse cells would add to each probed pixel, mean channel; empty without cells.
     pub coarse_differences: Vec<f64>,
+}
+
+impl PassFilm {
+    /// The first part of a pass that is rendered light by light, its light in one layer of those of such names.
+    pub fn into_layer(mut self, names: &[String], layer: usize) -> Self {
+        self.film = self.film.with_lights(names);
+        if let Some(light) = self.film.lights.get_mut(layer) {
+            light.radiance = self.film.pixels.iter().map(Pixel::radiance).collect();
+        }
+        self
+    }
+
+    /// Adds the light of another part of the pass, which is seen along the same rays. `layer` is that of its lights, if there are any.
+    pub fn add_light(&mut self, part: &PassFilm, layer: Option<usize>) {
+        for (pixel, of_part) in self.film.pixels.iter_mut().zip(&part.film.pixels) {
+            pixel.single_scatter += of_part.single_scatter;
+            pixel.multiple_scatter += of_part.multiple_scatter;
+            pixel.emission += of_part.emission;
+        }
+        if let Some(light) = layer.and_then(|layer| self.film.lights.get_mut(layer)) {
+            let pixels = light.radiance.iter_mut().zip(&part.film.pixels);
+            pixels.for_each(|(sum, pixel)| *sum += pixel.radiance());
+        }
+        for (sum, difference) in self.coarse_differences.iter_mut().zip(&part.coarse_differences) {
+            *sum += difference;
+        }
+    }
 }
 
 impl<'a> FilmPass<'a> {
@@ -61,7 +93,7 @@ impl<'a> FilmPass<'a> {
         let camera = &self.scene.camera;
         let (width, height) = (camera.width, camera.height);
         let columns = width.div_ceil(TILE);
-        let peaks = peaks(self.scene);
+        let peaks = peaks(self.scene, self.choice);
         let tiles: Vec<Vec<RenderedPixel>> = (0..columns * height.div_ceil(TILE))
             .into_par_iter()
             .map(|tile| {
@@ -78,9 +110,15 @@ impl<'a> FilmPass<'a> {
             })
             .collect();
         let mut film = Film::new(width, height);
+        if self.finds_depths {
+            film = film.with_depths();
+        }
         let mut coarse_differences = Vec::new();
         for made in tiles.into_iter().flatten() {
             film.pixels[made.index] = made.pixel;
+            if let Some(depths) = &mut film.depths {
+                depths[made.index] = made.depths;
+            }
             coarse_differences.extend(made.coarse_difference);
         }
         PassFilm { film, coarse_differences }
@@ -93,6 +131,7 @@ struct RenderedPixel {
     /// In the film.
     index: usize,
     pixel: Pixel,
+    depths: PixelDepths,
     /// Queries answered.
     query_count: usize,
     /// What coarse cells would add, if it is asked for.
@@ -100,8 +139,9 @@ struct RenderedPixel {
 }
 
 /// Images of the lights that shine from a position inside the medium: (light, place on the image).
-fn peaks(scene: &Scene) -> Vec<(usize, DVec2)> {
+fn peaks(scene: &Scene, choice: LightChoice) -> Vec<(usize, DVec2)> {
     let shining = |(index, light): (usize, &crate::light::Light)| {
+        choice.has_light(index).then_some(())?;
         let position = light.position().filter(|p| scene.medium.bounds.contains(*p))?;
         Some((index, scene.camera.project(position)?))
     };
@@ -125,6 +165,7 @@ const QUERY_BATCH: usize = 16384;
 
 impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
     fn new(pass: &'p FilmPass<'a>, peaks: &'p [(usize, DVec2)], reader: Reader<'a, E, S>) -> Self {
+        let reader = reader.with_choice(pass.choice).with_depths(pass.finds_depths);
         Self { pass, peaks, reader, pixels: Vec::new(), queries: Vec::new() }
     }
 
@@ -155,7 +196,8 @@ impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
             let looking = Looking { skipped: &skipped, pixel: number as u32, phase };
             let (reader, queries) = (&mut self.reader, &mut self.queries);
             let seen = reader.direct_light(&ray, f64::INFINITY, looking, queries, random);
-            let pixel = &mut self.pixels[number].pixel;
+            let RenderedPixel { pixel, depths, .. } = &mut self.pixels[number];
+            depths.add(&seen.depths, share);
             pixel.single_scatter += seen.single_scatter * share;
             pixel.emission += seen.emission * share;
             pixel.transmittance += seen.transmittance * share;

@@ -103,8 +103,8 @@ impl<E: Extinction> Fill<'_, E> {
         let Self { scene, extinction, emission, shape, observer, report } = self;
         let started = Instant::now();
         let medium = &scene.medium;
-        observer.stage_started(Stage::Trace, emission.count());
-        let tasks = (emission.count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);
+        observer.stage_started(Stage::Trace, emission.chosen_count());
+        let tasks = (emission.chosen_count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);
         let deposits = (0..tasks).map(|_| deposit()).collect();
         let settings = trace_settings(scene);
         let advanced = |steps| observer.advanced(steps);
@@ -112,7 +112,7 @@ impl<E: Extinction> Fill<'_, E> {
             trace_into(emission, medium, *extinction, settings, deposits, advanced);
         observer.stage_finished(Stage::Trace);
         report.seconds.trace += started.elapsed().as_secs_f64();
-        report.emitted_count += emission.count();
+        report.emitted_count += emission.chosen_count();
         report.power.average_in(&balance, report.passes_done);
 
         let started = Instant::now();

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::emission::{Emission, EmissionKind, EmissionSettings};
 use crate::estimate::{Divisor, EstimateOptions, Estimator, Kernel};
+use crate::light::LightChoice;
 use crate::map::{Columns, PhotonMap};
 use crate::math::square_maps::square_to_sphere;
 use crate::math::{Ball, DVec2, Ray, Rgb, mean_channel};
@@ -43,15 +44,28 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         observer: &dyn Observer,
         report: &mut RenderReport,
     ) -> Result<Self, RenderError> {
+        Self::prepare_for(LightChoice::All, scene, extinction, seed, observer, report)
+    }
+
+    /// The same of some light alone.
+    pub(super) fn prepare_for(
+        choice: LightChoice,
+        scene: &'a Scene,
+        extinction: &'a E,
+        seed: u64,
+        observer: &dyn Observer,
+        report: &mut RenderReport,
+    ) -> Result<Self, RenderError> {
         let medium = &scene.medium;
         let started = Instant::now();
         let (kind, count) = (scene.photons.emission, scene.photons.count);
         let settings = EmissionSettings { kind, count, photons_per_ray: 1, seed };
-        let emission = scene_emission(scene, extinction, settings);
+        let mut emission = scene_emission(scene, extinction, settings);
+        emission.choose(choice);
         let settings = trace_settings(scene);
         let lit_from = scene.lights.iter().find_map(|light| light.position());
         let frame = MapFrame::of(medium, lit_from);
-        observer.stage_started(Stage::Trace, emission.count());
+        observer.stage_started(Stage::Trace, emission.chosen_count());
         let traced = trace_photons(&emission, medium, extinction, frame, settings, |steps| {
             observer.advanced(steps);
         });

@@ -4,10 +4,12 @@
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
 mod calibration;
+mod checkpoint;
 mod distances;
 mod emitted_light;
 mod error_estimate;
 mod film_pass;
+mod light_groups;
 mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
@@ -16,26 +18,33 @@ mod passes;
 mod photon_query;
 mod pixel_peak;
 mod pixel_samples;
+mod ray_depths;
 mod reader;
 mod regression;
+mod render_state;
 mod report;
 mod scattered_light;
 mod single_scatter;
 
 pub use calibration::Calibration;
+pub use checkpoint::CheckpointError;
 pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
 pub use passes::photons_per_pass;
 pub use reader::{RayRadiance, Reader};
+pub use render_state::RenderState;
 pub use report::{RenderReport, StageSeconds};
 pub use scattered_light::Gather;
+
+use std::path::Path;
 
 use crate::film::Film;
 use crate::map::MapError;
 use crate::medium::{Bounds, MediumExtinction};
 use crate::scene::Scene;
+use lit_lattice::MAX_RESOLUTION as MAX_LATTICE;
 use passes::Passes;
 
 /// When a render ends: whichever comes first.
@@ -47,12 +56,25 @@ pub struct RenderOptions {
     pub target_error: Option<f64>,
     /// Wall-clock time \[s\]; the first pass is always made.
     pub seconds: Option<f64>,
+    /// What the film holds beside the usual layers.
+    pub layers: CostlyLayers,
+}
+
+/// Layers that cost something to find.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CostlyLayers {
+    /// How deep pixels look.
+    pub depths: bool,
+    /// The image of each light, by the name that the scene gives it: each is gathered by itself, from its own of the same photons, and
+    /// the film is their sum.
+    pub lights: bool,
 }
 
 impl RenderOptions {
     /// So many passes, and no other limit.
     pub fn passes(passes: u32) -> Self {
-        Self { passes: passes.max(1), target_error: None, seconds: None }
+        let layers = CostlyLayers::default();
+        Self { passes: passes.max(1), target_error: None, seconds: None, layers }
     }
 
     /// Whether something else than the number of passes ends the render: then passes are small.
@@ -94,6 +116,15 @@ pub enum RenderError {
     Map(#[from] MapError),
 }
 
+/// Where a render begins, and where it is kept.
+#[derive(Clone, Debug, Default)]
+pub struct Checkpoints<'a> {
+    /// The state to go on from, instead of from no pass; of the same scene and options ([`RenderState::load`]).
+    pub resume_from: Option<RenderState>,
+    /// The file to which the state is written after every pass.
+    pub save_to: Option<&'a Path>,
+}
+
 /// Renders all passes, or those until the observer asks to stop: at least one.
 ///
 /// # Errors
@@ -103,6 +134,20 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<Rendering, RenderError> {
+    render_from(scene, options, observer, Checkpoints::default())
+}
+
+/// The same from a state that was kept, and keeping it: what is rendered in several runs is, byte for byte, what one run
+/// renders that ends by the same number of passes.
+///
+/// # Errors
+/// As [`render`]. A checkpoint that cannot be written is none: the observer is told.
+pub fn render_from(
+    scene: &Scene,
+    options: &RenderOptions,
+    observer: &dyn Observer,
+    checkpoints: Checkpoints,
+) -> Result<Rendering, RenderError> {
     if matches!(scene.medium.bounds, Bounds::Infinite) {
         return Err(RenderError::InfiniteMedium);
     }
@@ -110,13 +155,17 @@ pub fn render(
         return Err(RenderError::NoLattice);
     }
     match &scene.medium.extinction {
-        MediumExtinction::Uniform(uniform) => Passes::new(scene, uniform, options, observer).run(),
-        MediumExtinction::Chromatic(chromatic) => {
-            Passes::new(scene, chromatic, options, observer).run()
+        MediumExtinction::Uniform(uniform) => {
+            Passes::new(scene, uniform, options, observer, checkpoints).run()
         }
-        MediumExtinction::Grid(grid) => Passes::new(scene, &**grid, options, observer).run(),
+        MediumExtinction::Chromatic(chromatic) => {
+            Passes::new(scene, chromatic, options, observer, checkpoints).run()
+        }
+        MediumExtinction::Grid(grid) => {
+            Passes::new(scene, &**grid, options, observer, checkpoints).run()
+        }
         MediumExtinction::Several(volumes) => {
-            Passes::new(scene, &**volumes, options, observer).run()
+            Passes::new(scene, &**volumes, options, observer, checkpoints).run()
         }
     }
 }

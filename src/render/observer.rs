@@ -1,5 +1,6 @@
 //! How a render tells of its progress, and how it is asked to stop.
 
+use crate::files::WriteFailure;
 use crate::render::ErrorEstimate;
 
 /// A stage of one pass.
@@ -26,6 +27,9 @@ pub trait Observer: Sync {
 
     /// A pass is complete: the mean of `passes` has that error.
     fn pass_finished(&self, _passes: u32, _error: Option<ErrorEstimate>) {}
+
+    /// The checkpoint of a pass could not be written; the render goes on.
+    fn checkpoint_failed(&self, _failure: &WriteFailure) {}
 
     /// Whether to end after the pass in flight.
     fn cancelled(&self) -> bool;

@@ -1,24 +1,25 @@
 //! The passes of a render: independent, averaged, and as many as the limits ask for.
 
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::time::Instant;
 
 use crate::emission::Emission;
-use crate::film::Film;
-use crate::light::Shadows;
+use crate::estimate::Divisor;
+use crate::light::{LightChoice, Shadows};
 use crate::math::Stream;
 use crate::medium::Extinction;
 use crate::reference::PathTracer;
-use crate::render::error_estimate::ErrorProbes;
 use crate::render::film_pass::{FilmPass, PassFilm};
+use crate::render::light_groups::{LightGroups, empty_film};
 use crate::render::lit_lattice::ReadFrom;
-use crate::render::regression::Filtered;
 use crate::render::scattered_light::{BouncedReader, LatticeReader, ScatteredLight};
 use crate::render::{
-    ErrorEstimate, Gather, LitMedium, Observer, Reader, RenderError, RenderOptions, RenderReport,
-    Rendering, Stage, lit_lattice,
+    Calibration, Checkpoints, ErrorEstimate, Gather, LitMedium, MAX_LATTICE, Observer, Reader,
+    RenderError, RenderOptions, RenderReport, RenderState, Rendering, Stage, lit_lattice,
 };
 use crate::scene::Scene;
+use crate::trace::PowerBalance;
 
 /// Photons a pixel and pass, where the image is made to a limit: what makes noise of photons and of rays about equal.
 const PHOTONS_A_PIXEL: f64 = 2.0;
@@ -41,14 +42,11 @@ const BIAS_NOISE: f64 = 0.1;
 /// The fewest photons of an estimate that k shrinks to: below, its noise is that of outliers.
 const FEWEST_OF_K: usize = 8;
 
-/// Columns of shadows a pixel: beyond, its rays look fewer times towards the light than columns are made.
-const COLUMNS_A_PIXEL: usize = 4;
-
 /// Passes from which the error is believed in.
 const FEWEST_FOR_ERROR: u32 = 4;
 
-/// Radius of the filter that is tried first \[pixels\].
-const FIRST_RADIUS: usize = 2;
+/// Columns of shadows a pixel: beyond, its rays look fewer times towards the light than columns are made.
+const COLUMNS_A_PIXEL: usize = 4;
 
 /// Share of the passes done after which the error is measured again at the latest: that of the filter takes time.
 const MOST_TO_MEASURE: f64 = 0.3;
@@ -69,15 +67,12 @@ pub struct Passes<'a, E> {
     samples_per_pixel: usize,
     /// Points a ray, of single and of multiple scattering.
     most_samples: [usize; 2],
-    /// Passes begun, with those that a finer lattice replaced.
-    begun: u32,
-    film: Film,
-    probes: ErrorProbes,
-    /// Of the image that the filter makes, once it is tried.
-    filtered: Option<Filtered>,
-    /// Passes at which the error is next measured.
-    next_measure: u32,
-    report: RenderReport,
+    groups: LightGroups,
+    state: RenderState,
+    /// Where the state is written after every pass.
+    save_to: Option<&'a Path>,
+    /// Seconds that the state had taken when this run began.
+    seconds_before: f64,
 }
 
 /// Where scattered light is gathered from.
@@ -85,22 +80,23 @@ enum Strategy<'a> {
     Knn,
     Lattice {
         emission: Emission<'a>,
-        resolution: usize,
         /// Collisions of paths that end in it; `None`: it is read where the camera looks.
         bounces: Option<u32>,
     },
 }
 
 impl<'a, E: Extinction> Passes<'a, E> {
-    /// None yet.
+    /// None yet, or those of a state that was kept.
     pub fn new(
         scene: &'a Scene,
         extinction: &'a E,
         options: &'a RenderOptions,
         observer: &'a dyn Observer,
+        checkpoints: Checkpoints<'a>,
     ) -> Self {
         let is_limited = options.has_limit();
         let mut samples_per_pixel = scene.render.samples_per_pixel;
+        let mut resolution = 0;
         let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
             Gather::Lattice | Gather::Bounce => {
@@ -111,13 +107,17 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     total = expected_photons(options.target_error);
                 }
                 let emission = lit_lattice::emission(scene, extinction, photons);
-                let resolution = scene.render.lattice;
-                let resolution = resolution.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
+                let asked = scene.render.lattice;
+                resolution = asked.unwrap_or_else(|| lit_lattice::resolution::<E>(total));
                 let bounces = scene.render.bounces;
                 let bounces = (scene.render.gather == Gather::Bounce).then_some(bounces);
-                Strategy::Lattice { emission, resolution, bounces }
+                Strategy::Lattice { emission, bounces }
             }
         };
+        let Checkpoints { resume_from, save_to } = checkpoints;
+        let film = || empty_film(scene, options);
+        let state = resume_from.unwrap_or_else(|| RenderState::new(film(), resolution));
+        let groups = LightGroups::of(scene, options);
         Self {
             scene,
             extinction,
@@ -132,55 +132,54 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 (true, _) => [POINTS_A_RAY; 2],
                 (false, _) => [usize::MAX; 2],
             },
-            begun: 0,
-            film: Film::new(scene.camera.width, scene.camera.height),
-            probes: ErrorProbes::new(scene.camera.width, scene.camera.height),
-            filtered: None,
-            next_measure: 2,
-            report: RenderReport::default(),
+            groups,
+            seconds_before: state.seconds,
+            state,
+            save_to,
         }
     }
 
-    /// Renders passes until a limit is reached or the observer asks to stop: at least one.
+    /// Renders passes until a limit is reached or the observer asks to stop: at least one, unless there are some already.
     pub fn run(mut self) -> Result<Rendering, RenderError> {
-        loop {
-            self.add_pass()?;
-            let (done, cancelled) = (self.report.passes_done, self.observer.cancelled());
-            let is_last = cancelled || self.is_out_of_passes();
-            if done >= self.next_measure || is_last {
-                self.measure();
-                self.next_measure = done + self.passes_to_measure();
-            }
-            self.observer.pass_finished(done, self.report.error);
-            if is_last || self.is_on_target() {
-                return Ok(self.finish());
-            }
-            self.refine();
+        if self.state.begun > 0 {
+            self.save();
         }
+        while !self.has_ended() {
+            self.refine();
+            self.add_pass()?;
+            if self.state.report.passes_done >= self.state.next_measure || self.is_out_of_passes() {
+                self.measure();
+            }
+            self.state.seconds = self.seconds();
+            let report = &self.state.report;
+            self.observer.pass_finished(report.passes_done, report.error);
+            self.save();
+        }
+        Ok(self.finish())
     }
 
-    /// Measures the error of the image, filtered where that is less.
+    /// Measures the error of the image, filtered where that is less, and says when to measure again.
     fn measure(&mut self) {
-        let Some(error) = self.probes.error() else { return };
-        self.report.error = Some(error);
-        if !self.filters() {
-            return;
+        let filters = self.filters();
+        let RenderState { probes, film, report, filter_radius, .. } = &mut self.state;
+        let Some(error) = probes.error() else { return };
+        report.error = Some(error);
+        if let Some(halves) = probes.halves(film).filter(|_| filters) {
+            let unfiltered = ErrorEstimate { bias: 0.0, ..error };
+            let filtered = halves.filtered(unfiltered, *filter_radius, probes.mean());
+            let ErrorEstimate { noise, bias } = filtered.error;
+            report.error = Some(ErrorEstimate { noise, bias: bias.hypot(error.bias) });
+            *filter_radius = filtered.radius;
         }
-        let Some(halves) = self.probes.halves() else { return };
-        let unfiltered = ErrorEstimate { bias: 0.0, ..error };
-        let radius = self.filtered.as_ref().map_or(FIRST_RADIUS, |filtered| filtered.radius);
-        let filtered = halves.filtered(unfiltered, radius, self.probes.mean());
-        let ErrorEstimate { noise, bias } = filtered.error;
-        self.report.error = Some(ErrorEstimate { noise, bias: bias.hypot(error.bias) });
-        self.filtered = Some(filtered);
+        self.state.next_measure = self.state.report.passes_done + self.passes_to_measure();
     }
 
     /// Passes until the error is worth measuring again: those that bring its noise down to what is asked for, were nothing else to change, but
     /// not many more than there are.
     fn passes_to_measure(&self) -> u32 {
-        let done = f64::from(self.report.passes_done);
+        let done = f64::from(self.state.report.passes_done);
         let enough = |target: f64| {
-            let ErrorEstimate { noise, bias } = self.report.error?;
+            let ErrorEstimate { noise, bias } = self.state.report.error?;
             let noise_left = (target * target - bias * bias).max(0.0);
             Some(done * noise * noise / noise_left)
         };
@@ -189,63 +188,134 @@ impl<'a, E: Extinction> Passes<'a, E> {
         (0.9 * all - done).clamp(1.0, most.max(1.0)) as u32
     }
 
-    /// Whether the filter is asked for, and has something to go by.
+    /// Whether the filter is asked for, and has something to go by. Layers of single lights are to add up to the image.
     fn filters(&self) -> bool {
         let render = &self.scene.render;
         let is_noisy = self.options.has_limit() || render.gather == Gather::Bounce;
-        let asked = render.filter.unwrap_or(is_noisy);
-        asked && !self.scene.render.photons_only && self.probes.mean() > 0.0
+        render.filter.unwrap_or(is_noisy)
+            && !render.photons_only
+            && self.groups.names.is_empty()
+            && self.state.probes.mean() > 0.0
     }
 
     /// The image, filtered if the filter pays.
     fn finish(mut self) -> Rendering {
-        let unfiltered = self.probes.error().map_or(0.0, |error| error.noise);
-        if let Some(filtered) = self.filtered.filter(|filtered| filtered.radius > 0) {
+        if self.state.report.passes_done + 1 >= self.state.next_measure {
+            self.measure();
+        }
+        let filters = self.filters();
+        let RenderState { mut film, mut report, probes, filter_radius, .. } = self.state;
+        let unfiltered = probes.error().map_or(0.0, |error| error.noise);
+        let halves = probes.halves(&film).filter(|_| filters && filter_radius > 0);
+        let filtered = halves.map(|halves| halves.with_radius(filter_radius, probes.mean()));
+        if let Some(filtered) = filtered {
             // Pixel by pixel the filter's noise is not known: on the whole it is that much less.
             let ratio = (filtered.error.noise / unfiltered).powi(2).min(1.0);
-            for (pixel, multiple) in self.film.pixels.iter_mut().zip(filtered.multiple) {
+            for (pixel, multiple) in film.pixels.iter_mut().zip(filtered.multiple) {
                 pixel.multiple_scatter = multiple;
                 pixel.variance *= ratio;
             }
-            self.report.filter_radius = filtered.radius;
+            report.filter_radius = filtered.radius;
         }
-        Rendering { film: self.film, report: self.report }
+        Rendering { film, report }
     }
 
+    /// Writes the state. A disk that is full ends no render: the observer is told.
+    fn save(&self) {
+        let Some(path) = self.save_to else { return };
+        if let Err(failure) = self.state.save(path, self.scene, self.options) {
+            self.observer.checkpoint_failed(&failure);
+        }
+    }
+
+    /// Wall-clock time of this run and those before \[s\].
+    fn seconds(&self) -> f64 {
+        self.seconds_before + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Renders the next pass, in the parts that its layers ask for, and averages it in.
     fn add_pass(&mut self) -> Result<(), RenderError> {
-        let Self { scene, extinction, observer, report, .. } = self;
-        let seed = pass_seed(scene.photons.seed, self.begun);
-        let half = self.begun % 2;
+        let mut pass: Option<PassFilm> = None;
+        let mut power = PowerBalance::default();
+        for (choice, layer) in self.groups.parts.clone() {
+            let calibration = self.calibration()?;
+            let mut part_report = RenderReport { calibration, ..RenderReport::default() };
+            let part = self.gather_part(choice, &mut part_report)?;
+            self.state.report.add_costs(&part_report);
+            power.add(&part_report.power);
+            match (&mut pass, layer) {
+                (Some(pass), _) => pass.add_light(&part, layer),
+                (None, None) => pass = Some(part),
+                (None, Some(layer)) => pass = Some(part.into_layer(&self.groups.names, layer)),
+            }
+        }
+        let Some(pass) = pass else { return Ok(()) };
+        let RenderState { begun, film, probes, report, .. } = &mut self.state;
+        report.power.average_in(&power, report.passes_done);
+        film.average_in(&pass.film, report.passes_done);
+        probes.add((*begun % 2) as usize, &pass.film, &pass.coarse_differences);
+        *begun += 1;
+        report.passes_done += 1;
+        Ok(())
+    }
+
+    /// What k photons count as, where it is measured: once a render, and of all lights together, as each alone has few photons.
+    fn calibration(&mut self) -> Result<Option<Calibration>, RenderError> {
+        let Self { scene, extinction, observer, groups, .. } = self;
+        let known = self.state.report.calibration;
+        let is_measured = scene.estimate.divisor == Divisor::Calibrated;
+        let is_knn = matches!(self.strategy, Strategy::Knn);
+        if known.is_some() || !is_knn || !is_measured || groups.names.is_empty() {
+            return Ok(known);
+        }
+        let mut report = RenderReport::default();
+        LitMedium::prepare(scene, *extinction, scene.photons.seed, *observer, &mut report)?;
+        self.state.report.add_costs(&report);
+        Ok(report.calibration)
+    }
+
+    /// Traces and gathers some of the light of the next pass. Adds to `report`.
+    fn gather_part(
+        &mut self,
+        choice: LightChoice,
+        report: &mut RenderReport,
+    ) -> Result<PassFilm, RenderError> {
+        let Self { scene, extinction, observer, .. } = self;
+        let RenderState { begun, resolution, .. } = self.state;
+        let seed = pass_seed(scene.photons.seed, begun);
         let film_pass = FilmPass {
             scene,
             seed,
-            half,
+            half: begun % 2,
             samples_per_pixel: self.samples_per_pixel,
-            first_sample: u64::from(self.begun / 2) * self.samples_per_pixel as u64,
+            first_sample: u64::from(begun / 2) * self.samples_per_pixel as u64,
+            choice,
+            finds_depths: self.options.layers.depths,
         };
-        let made = match &mut self.strategy {
+        Ok(match &mut self.strategy {
             Strategy::Knn => {
-                let mut lit = LitMedium::prepare(scene, *extinction, seed, *observer, report)?;
+                let mut lit =
+                    LitMedium::prepare_for(choice, scene, *extinction, seed, *observer, report)?;
                 if self.options.has_limit() {
-                    lit = lit.with_k(shrunk_k(scene.estimate.k, self.begun));
+                    lit = lit.with_k(shrunk_k(scene.estimate.k, begun));
                 }
                 gather(&film_pass, || lit.reader(), *observer, report)
             }
-            Strategy::Lattice { emission, resolution, bounces } => {
+            Strategy::Lattice { emission, bounces } => {
                 emission.reseed(seed);
+                emission.choose(choice);
                 // Beyond the photons that it was chosen for cells go on shrinking.
-                let emitted = emission.count().saturating_mul(u64::from(self.begun) + 1);
+                let emitted = emission.count().saturating_mul(u64::from(begun) + 1);
                 let grown = match self.options.has_limit() && scene.render.lattice.is_none() {
                     true => lit_lattice::resolution::<E>(emitted),
                     false => 0,
                 };
                 let from = if bounces.is_some() { ReadFrom::Anywhere } else { ReadFrom::Camera };
-                let resolution = grown.max(*resolution);
                 let lattice = &lit_lattice::trace(
                     scene,
                     *extinction,
                     emission,
-                    (resolution, from),
+                    (grown.max(resolution), from),
                     *observer,
                     report,
                 )?;
@@ -266,7 +336,9 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     }
                     Some(bounces) => {
                         let reader = || {
-                            let paths = PathTracer::new(scene, *extinction).with_shadows(shadows);
+                            let paths = PathTracer::new(scene, *extinction)
+                                .with_shadows(shadows)
+                                .with_choice(choice);
                             let lattice = lattice();
                             let bounced = BouncedReader { lattice, paths, bounces, seed };
                             Reader::new(scene, *extinction, bounced)
@@ -277,50 +349,49 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     }
                 }
             }
-        };
-        self.begun += 1;
-        self.film.average_in(&made.film, report.passes_done);
-        self.probes.add(half as usize, &made.film, &made.coarse_differences);
-        report.passes_done += 1;
-        Ok(())
+        })
     }
 
-    /// Whether the image is as good as it is asked to be.
-    fn is_on_target(&self) -> bool {
-        let (Some(target), Some(error)) = (self.options.target_error, self.report.error) else {
-            return false;
+    /// Whether a limit is reached, or the end asked for.
+    fn has_ended(&self) -> bool {
+        let done = self.state.report.passes_done;
+        let within = |target: f64| {
+            let error = self.state.report.error.map_or(f64::INFINITY, |error| error.total());
+            done >= FEWEST_FOR_ERROR && error <= target
         };
-        self.report.passes_done >= FEWEST_FOR_ERROR && error.total() <= target
+        done > 0
+            && (self.is_out_of_passes()
+                || self.options.target_error.is_some_and(within)
+                || self.observer.cancelled())
     }
 
     /// Whether there is no pass or no time left.
     fn is_out_of_passes(&self) -> bool {
         // A pass that would end too late is not begun.
-        let seconds = self.started.elapsed().as_secs_f64();
-        let next = seconds * f64::from(self.begun + 1) / f64::from(self.begun);
-        self.report.passes_done >= self.options.passes
-            || self.options.seconds.is_some_and(|budget| next > budget)
+        let begun = f64::from(self.state.begun);
+        let is_late = |budget: f64| self.seconds() * (begun + 1.0) / begun > budget;
+        self.state.report.passes_done >= self.options.passes
+            || self.options.seconds.is_some_and(is_late)
     }
 
     /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
     fn refine(&mut self) {
-        let (Some(target), Some(error)) = (self.options.target_error, self.probes.error()) else {
+        let state = &mut self.state;
+        // That of the lattice alone.
+        let (Some(target), Some(error)) = (self.options.target_error, state.probes.error()) else {
             return;
         };
-        let Strategy::Lattice { resolution, .. } = &mut self.strategy else { return };
         // What the estimate of the bias may be off by itself counts as noise.
         let too_much = (error.bias - BIAS_NOISE * error.noise) / (BIAS_SHARE * target);
-        let can = *resolution < lit_lattice::MAX_RESOLUTION && self.scene.render.lattice.is_none();
-        if self.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
+        let can = matches!(self.strategy, Strategy::Lattice { .. })
+            && state.resolution < MAX_LATTICE
+            && self.scene.render.lattice.is_none();
+        if state.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
             return;
         }
-        let finer = *resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
-        *resolution = (finer as usize).min(lit_lattice::MAX_RESOLUTION);
-        self.film = Film::new(self.film.width, self.film.height);
-        self.probes = ErrorProbes::new(self.film.width, self.film.height);
-        self.filtered = None;
-        self.next_measure = FEWEST_FOR_ERROR;
-        self.report.passes_done = 0;
+        let finer = state.resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
+        state.resolution = (finer as usize).min(MAX_LATTICE);
+        state.restart_film();
     }
 }
 

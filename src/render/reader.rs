@@ -1,15 +1,17 @@
 //! Reading a lit medium along rays.
 
 use crate::estimate::{Estimator, InScattered};
-use crate::light::{Shadows, transmittance_to};
+use crate::film::PixelDepths;
+use crate::light::{Light, LightChoice, Shadows, transmittance_to};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
 use crate::render::distances::ByTransmittance;
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
+use crate::render::ray_depths::ray_depths;
 use crate::render::scattered_light::ScatteredLight;
 use crate::render::single_scatter::ScatteringRay;
-use crate::scene::Scene;
+use crate::scene::{Background, Scene};
 
 /// Light along a ray, by its way through the medium.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +24,8 @@ pub struct RayRadiance {
     pub emission: Rgb,
     /// Transmittance of the ray's whole part in the medium.
     pub transmittance: Rgb,
+    /// How deep the ray looks, where it is asked for.
+    pub depths: PixelDepths,
 }
 
 /// How a ray is looked along.
@@ -42,6 +46,8 @@ pub struct Reader<'a, E, S> {
     scattered_light: S,
     shadows: Option<&'a Shadows>,
     most_samples: [usize; 2],
+    choice: LightChoice,
+    finds_depths: bool,
     profile: RayProfile,
     queries: Vec<PhotonQuery>,
 }
@@ -57,13 +63,15 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     /// A reader, to which `scattered_light` says what is scattered more than once.
     pub fn new(scene: &'a Scene, extinction: &'a E, scattered_light: S) -> Self {
         let (profile, queries) = (RayProfile::default(), Vec::new());
-        let shadows = None;
+        let (shadows, choice) = (None, LightChoice::All);
         Self {
             scene,
             extinction,
             scattered_light,
             shadows,
             most_samples: [usize::MAX; 2],
+            choice,
+            finds_depths: false,
             profile,
             queries,
         }
@@ -79,6 +87,24 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     pub fn with_most_samples(mut self, most_samples: [usize; 2]) -> Self {
         self.most_samples = most_samples;
         self
+    }
+
+    /// The same for some light alone.
+    pub fn with_choice(mut self, choice: LightChoice) -> Self {
+        self.choice = choice;
+        self
+    }
+
+    /// The same with depths, if `finds_depths`.
+    pub fn with_depths(mut self, finds_depths: bool) -> Self {
+        self.finds_depths = finds_depths;
+        self
+    }
+
+    /// The lights looked at, each with its number.
+    fn lights(&self) -> impl Iterator<Item = (usize, &'a Light)> {
+        let choice = self.choice;
+        self.scene.lights.iter().enumerate().filter(move |(index, _)| choice.has_light(*index))
     }
 
     /// Transmittance of a ray up to `max_distance` \[m\].
@@ -134,9 +160,15 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
             transmittance: exp(-profile.optical_depth(span.end)),
             ..RayRadiance::default()
         };
-        if let Some(emissivity) = &self.scene.medium.emissivity {
+        if let Some(emissivity) = &self.scene.medium.emissivity
+            && self.choice.has_medium()
+        {
             let medium = &self.scene.medium;
             radiance.emission += emitted_light(medium, emissivity, ray, span, profile, random);
+        }
+        if self.finds_depths {
+            let medium = &self.scene.medium;
+            radiance.depths = ray_depths(medium, self.extinction, ray, span, profile, phase);
         }
         if !self.scene.render.photons_only {
             radiance.single_scatter = self.single_scatter(ray, span, skipped, phase, random);
@@ -186,14 +218,17 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     ) -> Rgb {
         let scattering = self.scattering_ray(ray, span);
         let samples = self.scene.render.light_samples.min(self.most_samples[0]);
-        let lights = self.scene.lights.iter().enumerate().filter(|(i, _)| !skipped.contains(i));
+        let lights = self.lights().filter(|(index, _)| !skipped.contains(index));
         lights.map(|light| scattering.single_scatter(light, samples, phase, random)).sum()
     }
 
-    /// Lights seen along the ray.
+    /// Lights seen along the ray; a background that is held out is none of them.
     fn unscattered(&self, ray: &Ray, max_distance: f64, transmittance: impl Fn(f64) -> Rgb) -> Rgb {
-        let seen = self.scene.lights.iter().filter_map(|light| light.seen_along(ray));
-        let near = seen.filter(|(distance, _)| *distance <= max_distance);
+        let is_background_seen = self.scene.render.background == Background::Visible;
+        let seen = self.lights().filter_map(|(_, light)| light.seen_along(ray));
+        let near = seen.filter(|(distance, _)| {
+            *distance <= max_distance && (is_background_seen || distance.is_finite())
+        });
         near.map(|(distance, radiance)| radiance * transmittance(distance)).sum()
     }
 

@@ -11,12 +11,15 @@
 
 use rayon::prelude::*;
 
-use crate::film::Film;
+use crate::film::{Film, Pixel};
 use crate::math::{Rgb, mean_channel};
 use crate::render::error_estimate::ErrorEstimate;
 
 /// Radii tried \[pixels\]; 0 is no filter.
-const RADII: [usize; 7] = [0, 1, 2, 3, 4, 6, 8];
+const RADII: [usize; 7] = [0, 1, 2, 3, 4, 6, MAX_FILTER_RADIUS];
+
+/// The largest of them.
+pub const MAX_FILTER_RADIUS: usize = 8;
 
 /// Share of a feature's variance by which its slope is damped.
 const DAMPING: f64 = 1e-3;
@@ -28,9 +31,14 @@ const BLOCK: usize = 16;
 const FEATURES: usize = 4;
 
 /// Two independent halves of an image's passes, and how much each counts.
+#[derive(Clone, Copy)]
 pub struct Halves<'a> {
-    /// Means of each half's passes.
-    pub films: [&'a Film; 2],
+    /// The mean of all passes, for its features.
+    pub film: &'a Film,
+    /// Mean radiance a pixel of each half.
+    pub radiance: [&'a [Rgb]; 2],
+    /// Mean multiple scattering a pixel of each half.
+    pub multiple: [&'a [Rgb]; 2],
     /// Passes of each half: none 0.
     pub counts: [u32; 2],
 }
@@ -64,7 +72,7 @@ impl Halves<'_> {
 
     /// The image filtered with that radius, whatever comes of it.
     pub fn with_radius(&self, radius: usize, mean: f64) -> Filtered {
-        let Film { width, height, .. } = *self.films[0];
+        let Film { width, height, .. } = *self.film;
         let pixels = self.pixels();
         let rows: Vec<Vec<[Rgb; 2]>> = (0..height)
             .into_par_iter()
@@ -85,32 +93,28 @@ impl Halves<'_> {
 
     /// What the filter sees of each pixel.
     fn pixels(&self) -> Vec<FeaturePixel> {
-        let [a, b] = self.shares();
-        let [even, odd] = self.films;
-        let pixel = |(even, odd): (&crate::film::Pixel, &crate::film::Pixel)| FeaturePixel {
-            single: mean_channel(even.single_scatter * a + odd.single_scatter * b),
-            opacity: 1.0 - mean_channel(even.transmittance * a + odd.transmittance * b),
-            halves: [even.multiple_scatter, odd.multiple_scatter],
+        let [even, odd] = self.multiple;
+        let pixel = |(index, pixel): (usize, &Pixel)| FeaturePixel {
+            single: mean_channel(pixel.single_scatter),
+            opacity: pixel.alpha(),
+            halves: [even[index], odd[index]],
         };
-        even.pixels.iter().zip(&odd.pixels).map(pixel).collect()
+        self.film.pixels.iter().enumerate().map(pixel).collect()
     }
 
     /// Noise and bias of filtered halves, as shares of `mean`.
     fn error(&self, filtered: &[[Rgb; 2]], mean: f64) -> ErrorEstimate {
         let [a, b] = self.shares();
-        let [even, odd] = self.films;
-        let Film { width, height, .. } = *even;
+        let Film { width, height, .. } = *self.film;
         let columns = width.div_ceil(BLOCK);
         let mut blocks = vec![0.0; columns * height.div_ceil(BLOCK)];
         let mut noise = 0.0;
         for (index, [smooth_even, smooth_odd]) in filtered.iter().enumerate() {
-            let (even, odd) = (&even.pixels[index], &odd.pixels[index]);
-            let unfiltered = even.radiance() - odd.radiance();
-            let raw = even.multiple_scatter - odd.multiple_scatter;
-            let difference = unfiltered - raw + *smooth_even - *smooth_odd;
+            let [even, odd] = self.multiple.map(|half| half[index]);
+            let unfiltered = self.radiance[0][index] - self.radiance[1][index];
+            let difference = unfiltered - (even - odd) + *smooth_even - *smooth_odd;
             noise += mean_channel(difference * difference);
-            let residual =
-                (*smooth_even - even.multiple_scatter) * (*smooth_odd - odd.multiple_scatter);
+            let residual = (*smooth_even - even) * (*smooth_odd - odd);
             blocks[index / width / BLOCK * columns + index % width / BLOCK] +=
                 mean_channel(residual);
         }
@@ -302,6 +306,7 @@ fn filter_row(
 mod tests {
     use super::*;
     use crate::math::{Random, Stream, uniform};
+    use crate::render::error_estimate::ErrorProbes;
 
     /// A film whose multiple scattering is `value` of (x, y) and its features, with noise of that standard deviation.
     fn film(random: &mut Random, noise: f64, bend: f64) -> Film {
@@ -320,14 +325,20 @@ mod tests {
         film
     }
 
+    fn probes(halves: [&Film; 2]) -> ErrorProbes {
+        let mut probes = ErrorProbes::new(64, 48);
+        halves.into_iter().enumerate().for_each(|(half, film)| probes.add(half, film, &[]));
+        probes
+    }
+
     /// What is linear in place and features is left as it is, up to the damping, at corners and edges, too; and noise falls as it must.
     #[test]
     fn linear_light_passes_and_noise_does_not() {
         let mut random = Stream::Experiment.random(21, 0);
         let exact = film(&mut random, 0.0, 0.0);
         let noisy = [film(&mut random, 0.5, 0.0), film(&mut random, 0.5, 0.0)];
-        let still = Halves { films: [&exact, &exact], counts: [1, 1] };
-        let halves = Halves { films: [&noisy[0], &noisy[1]], counts: [3, 3] };
+        let (still, noisy) = (probes([&exact, &exact]), probes(noisy.each_ref()));
+        let (still, halves) = (still.halves(&exact).unwrap(), noisy.halves(&exact).unwrap());
         for radius in [2, 4] {
             let passed = still.with_radius(radius, 2.5);
             let largest = passed.multiple.iter().zip(&exact.pixels).fold(0.0, |largest, (f, p)| {
@@ -364,7 +375,8 @@ mod tests {
         };
         for (noise, largest) in [(1.0, 4), (0.2, 2), (0.01, 0)] {
             let noisy = [film(&mut random, noise, 0.3), film(&mut random, noise, 0.3)];
-            let halves = Halves { films: [&noisy[0], &noisy[1]], counts: [2, 2] };
+            let probes = probes(noisy.each_ref());
+            let halves = probes.halves(&exact).unwrap();
             let raw = noise * (2.0f64 / 3.0).sqrt() / 2f64.sqrt();
             let chosen = halves.filtered(ErrorEstimate { noise: raw, bias: 0.0 }, 2, 1.0);
             assert!(chosen.radius <= largest, "{noise}: {}", chosen.radius);

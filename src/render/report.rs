@@ -27,6 +27,20 @@ pub struct RenderReport {
     pub error: Option<ErrorEstimate>,
 }
 
+impl RenderReport {
+    /// Adds what another render, or a part of this one, took; its power, means and passes are the caller's.
+    pub(super) fn add_costs(&mut self, part: &Self) {
+        self.emitted_count += part.emitted_count;
+        self.stored_count += part.stored_count;
+        self.bytes_per_photon = part.bytes_per_photon;
+        self.calibration = part.calibration;
+        self.seconds.trace += part.seconds.trace;
+        self.seconds.build += part.seconds.build;
+        self.seconds.gather += part.seconds.gather;
+        self.seconds.calibrate += part.seconds.calibrate;
+    }
+}
+
 /// Time of each stage \[s\].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StageSeconds {

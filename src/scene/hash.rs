@@ -49,12 +49,15 @@ impl SceneFile {
             let key = if is_one { "medium.file".into() } else { format!("medium[{index}].file") };
             Some((key, file))
         });
-        let lights = self.lights.iter_mut().enumerate().filter_map(|(index, light)| match light {
-            LightSection::ImageEnvironment { file, .. } => {
-                Some((format!("light[{index}].file"), file))
-            }
-            _ => None,
-        });
+        let lights =
+            self.lights.iter_mut().enumerate().filter_map(|(index, light)| {
+                match &mut light.light {
+                    LightSection::ImageEnvironment { file, .. } => {
+                        Some((format!("light[{index}].file"), file))
+                    }
+                    _ => None,
+                }
+            });
         media.chain(lights)
     }
 }

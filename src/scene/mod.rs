@@ -20,14 +20,15 @@ mod loaded_grids;
 mod media;
 mod overrides;
 mod plan;
+mod settings;
 mod tree;
 mod volume;
 
 pub use error::SceneError;
 pub use file::{
-    BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys, LightSection,
-    MediumSection, PhaseSection, PhotonSettings, RenderSettings, SceneFile, TemperatureKeys,
-    TransformSection,
+    Background, BoundsSection, CameraSection, EmissionSection, EstimateSettings, FlameKeys,
+    LightSection, MediumSection, NamedLight, PhaseSection, PhotonSettings, RenderSettings,
+    SceneFile, TemperatureKeys, TransformSection,
 };
 pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
@@ -59,6 +60,8 @@ pub struct Scene {
     pub medium: Medium,
     /// At least one, unless the medium has light of its own.
     pub lights: Vec<Light>,
+    /// What each light is called, if the scene says so; may be shorter than `lights`.
+    pub light_names: Vec<Option<String>>,
     /// How photons are emitted and followed.
     pub photons: PhotonSettings,
     /// How the photon map is read.
@@ -115,11 +118,12 @@ impl Scene {
         let medium = media::read(&file.media, directory, rules, &mut notes)?;
         let lights = file.lights.iter().enumerate();
         let lights = lights
-            .map(|(index, section)| build::light(section, &format!("light[{index}]"), directory))
+            .map(|(index, named)| build::light(&named.light, &format!("light[{index}]"), directory))
             .collect::<Result<_, _>>()?;
         let mut scene = Self {
             camera: file.camera.camera()?,
             lights,
+            light_names: file.lights.iter().map(|named| named.name.clone()).collect(),
             photons: file.photons,
             estimate: file.estimate,
             render: RenderSettings {

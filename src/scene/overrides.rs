@@ -31,6 +31,8 @@ pub struct Overrides {
     pub samples_per_pixel: Option<u64>,
     /// `render.photons_only`
     pub photons_only: Option<bool>,
+    /// `render.background`, as the file spells it.
+    pub background: Option<String>,
     /// `medium.sdf_to_fog`, of every volume from a file.
     pub sdf_to_fog: Option<bool>,
     /// Memory that reading a volume may take \[bytes\], instead of the default of [`Limits`]; not a value of the file.
@@ -65,6 +67,7 @@ impl Overrides {
         set("render", "filter", self.filter.clone().map(Value::Text));
         set("render", "samples_per_pixel", self.samples_per_pixel.map(integer));
         set("render", "photons_only", self.photons_only.map(Value::Boolean));
+        set("render", "background", self.background.clone().map(Value::Text));
         let resolution = self.resolution.map(|sides| {
             let item = |side| Node { origin: Origin::Override, value: integer(side) };
             Value::List(sides.map(item).into())

@@ -51,7 +51,7 @@ pub struct TracedPhotons {
     pub overflow: bool,
 }
 
-/// Traces all photons of `emission` and stores their collisions. `advanced` is told of photons done, from any thread.
+/// Traces the photons that `emission` looks at and stores their collisions. `advanced` is told of photons done, from any thread.
 pub fn trace_photons<E: Extinction>(
     emission: &Emission,
     medium: &Medium,
@@ -60,7 +60,8 @@ pub fn trace_photons<E: Extinction>(
     settings: TraceSettings,
     advanced: impl Fn(u64) + Sync,
 ) -> TracedPhotons {
-    let count = emission.count();
+    let count = emission.chosen_count();
+    let before = emission.rays().start * emission.photons_per_ray();
     let shares = count.div_ceil(SHARE);
     // A batch of shares at a time bounds what is held twice while merging.
     let batch = 64 * rayon::current_num_threads() as u64;
@@ -73,7 +74,7 @@ pub fn trace_photons<E: Extinction>(
                 let keep = Collisions { frame, extinction, photons: Vec::new() };
                 let mut path = Path::new(medium, extinction, settings, keep);
                 (share * SHARE..end)
-                    .filter_map(|index| emission.photon(index))
+                    .filter_map(|index| emission.photon(before + index))
                     .for_each(|photon| path.follow(photon));
                 advanced(end - share * SHARE);
                 (path.keep.photons, path.balance)
@@ -108,7 +109,7 @@ pub fn trace_paths<E: Extinction>(
     emitted.map(trace).collect()
 }
 
-/// Traces all photons of `emission` into `keeps`, in parallel: keep i of n takes rays i, i + n, i + 2 n and so on with all
+/// Traces the photons that `emission` looks at into `keeps`, in parallel: keep i of n takes rays i, i + n, i + 2 n and so on with all
 /// photons of each, so that what each of them sees is a thinner version of the whole. The balance is that of all photons.
 pub fn trace_into<E: Extinction, K: Keep>(
     emission: &Emission,
@@ -120,14 +121,14 @@ pub fn trace_into<E: Extinction, K: Keep>(
 ) -> (Vec<K>, PowerBalance) {
     let step = keeps.len().max(1);
     let per_ray = emission.photons_per_ray();
-    let rays = emission.count() / per_ray;
+    let rays = emission.rays();
     let traced: Vec<(K, PowerBalance)> = keeps
         .into_par_iter()
         .enumerate()
         .map(|(first, keep)| {
             let mut path = Path::new(medium, extinction, settings, keep);
             let mut unreported = 0;
-            for number in (first as u64..rays).step_by(step) {
+            for number in (rays.start + first as u64..rays.end).step_by(step) {
                 if per_ray == 1 {
                     emission.photon(number).into_iter().for_each(|photon| path.follow(photon));
                 } else if let Some(ray) = emission.ray(number) {

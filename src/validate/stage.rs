@@ -14,7 +14,7 @@ use crate::medium::{
     Bounds, Extinction, GridExtinction, Medium, MediumExtinction, Phase, UniformExtinction,
 };
 use crate::render::Gather;
-use crate::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
+use crate::scene::{Background, EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use crate::trace::{MapFrame, Photon, TraceSettings, TracedPhotons, trace_photons};
 
 /// The box from -1 to 1.
@@ -83,6 +83,7 @@ pub(super) fn scene(
         camera: camera.ok_or(ValidateError::Scene)?,
         medium,
         lights,
+        light_names: Vec::new(),
         photons: PhotonSettings {
             count: batch.count,
             emission: EmissionKind::Stratified,
@@ -105,6 +106,7 @@ pub(super) fn scene(
             filter: None,
             lattice: None,
             photons_only: false,
+            background: Background::Visible,
         },
         hash: 0,
         grids: Vec::new(),

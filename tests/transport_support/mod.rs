@@ -15,7 +15,7 @@ use photonvdb::medium::{
     UniformExtinction,
 };
 use photonvdb::render::{Gather, LitScene, Unobserved};
-use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
+use photonvdb::scene::{Background, EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use photonvdb::trace::{MapFrame, Photon, TraceSettings, TracedPhotons, trace_photons};
 
 /// Runs behind every z-score: independent photon maps.
@@ -76,6 +76,7 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
         camera,
         medium,
         lights: vec![light],
+        light_names: Vec::new(),
         photons: PhotonSettings {
             count: photon_count,
             emission: EmissionKind::Stratified,
@@ -98,6 +99,7 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             filter: None,
             lattice: None,
             photons_only: false,
+            background: Background::Visible,
         },
         hash: 0,
         grids: Vec::new(),

@@ -4,7 +4,7 @@ pub mod args;
 mod bar;
 
 use photonvdb::film::{
-    ExtraLayers, FilmError, RenderMetadata, check_writable, write_exr, write_preview_png,
+    ExrOptions, FilmError, RenderMetadata, check_writable, write_exr, write_preview_png,
 };
 use photonvdb::reference::{Reference, render_reference};
 use photonvdb::scene::Scene;
@@ -57,7 +57,7 @@ fn write_images(
     scene: &Scene,
     reference: &Reference,
 ) -> Result<(), FilmError> {
-    let extra = ExtraLayers { variance: true, ..ExtraLayers::default() };
+    let extra = ExrOptions { variance: true, ..ExrOptions::default() };
     write_exr(&arguments.output, &reference.film, &extra, &metadata(arguments, scene, reference))?;
     match &arguments.preview {
         Some(path) => write_preview_png(path, &reference.film, None),

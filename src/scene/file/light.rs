@@ -8,6 +8,43 @@ use super::table::{OneOrThree, Table};
 use crate::math::{DVec3, Rgb};
 use crate::scene::error::Problem;
 
+/// `[[light]]`: one light, and what its layer is called.
+///
+/// | key | type | unit | default | range | meaning |
+/// |---|---|---|---|---|---|
+/// | `name` | text | | its number, from 0 | letters, digits, `_`, `-`, a letter first; not `medium` | with `--layers lights` its layer is `light.NAME`; lights of one name share it |
+///
+/// The other keys are those of [`LightSection`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NamedLight {
+    /// Name of its layer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The light.
+    #[serde(flatten)]
+    pub light: LightSection,
+}
+
+impl NamedLight {
+    pub(super) fn read(table: &Table) -> Result<Self, Problem> {
+        let name: Option<String> = table.get("name")?;
+        let fits = name.as_deref().is_none_or(is_layer_name);
+        table.ensure("name", fits, NAME_RULE)?;
+        Ok(Self { name, light: LightSection::read(table)? })
+    }
+}
+
+const NAME_RULE: &str = "must begin with a letter and hold up to 64 letters, digits, `_` and `-` (`medium` is the medium's own light)";
+
+/// Whether a layer can be called so: numbers are those of lights without a name.
+fn is_layer_name(name: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.len() <= 64
+        && name.chars().all(is_part)
+        && name != "medium"
+}
+
 /// `[[light]]`: one light, of one of six kinds. Light of zero power is legal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
@@ -72,12 +109,12 @@ pub enum LightSection {
 }
 
 const KINDS: [(&str, &[&str]); 6] = [
-    ("point", &["kind", "position", "intensity"]),
-    ("spot", &["kind", "position", "look_at", "intensity", "cone_angle", "falloff_angle"]),
-    ("directional", &["kind", "direction", "irradiance"]),
-    ("environment", &["kind", "radiance", "file", "scale", "rotation"]),
-    ("quad", &["kind", "corner", "edge_u", "edge_v", "radiance"]),
-    ("sphere", &["kind", "center", "radius", "radiance"]),
+    ("point", &["name", "kind", "position", "intensity"]),
+    ("spot", &["name", "kind", "position", "look_at", "intensity", "cone_angle", "falloff_angle"]),
+    ("directional", &["name", "kind", "direction", "irradiance"]),
+    ("environment", &["name", "kind", "radiance", "file", "scale", "rotation"]),
+    ("quad", &["name", "kind", "corner", "edge_u", "edge_v", "radiance"]),
+    ("sphere", &["name", "kind", "center", "radius", "radiance"]),
 ];
 
 /// Narrowest cone whose solid angle does not vanish by rounding \[degrees\].

@@ -19,12 +19,12 @@ pub use bounds::BoundsSection;
 pub use camera::CameraSection;
 pub use emission::{EmissionSection, FlameKeys, TemperatureKeys};
 pub use estimate::EstimateSettings;
-pub use light::LightSection;
+pub use light::{LightSection, NamedLight};
 pub use medium::MediumSection;
 pub use phase::PhaseSection;
 pub use photons::PhotonSettings;
 pub(super) use photons::emission_word;
-pub use render::RenderSettings;
+pub use render::{Background, RenderSettings};
 pub use transform::TransformSection;
 
 use std::path::Path;
@@ -42,7 +42,7 @@ use table::Table;
 /// |---|---|---|
 /// | `[camera]` | required | where the image is taken from: [`CameraSection`] |
 /// | `[medium]` | required | what fills the scene: [`MediumSection`]; `[[medium]]`, more than once, for several volumes |
-/// | `[[light]]` | at least one, unless the medium glows | what lights it: [`LightSection`] |
+/// | `[[light]]` | at least one, unless the medium glows | what lights it: [`NamedLight`] |
 /// | `[photons]` | all defaults | how photons are emitted and followed: [`PhotonSettings`] |
 /// | `[estimate]` | all defaults | how the photon map is read: [`EstimateSettings`] |
 /// | `[render]` | all defaults | how pixels are sampled: [`RenderSettings`] |
@@ -55,7 +55,7 @@ pub struct SceneFile {
     #[serde(rename = "medium", serialize_with = "serialize_media")]
     pub media: Vec<MediumSection>,
     #[serde(rename = "light")]
-    pub lights: Vec<LightSection>,
+    pub lights: Vec<NamedLight>,
     pub photons: PhotonSettings,
     pub estimate: EstimateSettings,
     pub render: RenderSettings,
@@ -91,7 +91,7 @@ impl SceneFile {
         let file = Self {
             camera: CameraSection::read(&root.section("camera")?)?,
             media: MediumSection::read_all(&root)?,
-            lights: lights.iter().map(LightSection::read).collect::<Result<_, _>>()?,
+            lights: lights.iter().map(NamedLight::read).collect::<Result<_, _>>()?,
             photons: PhotonSettings::read(&root.section("photons")?)?,
             estimate: EstimateSettings::read(&root.section("estimate")?)?,
             render: RenderSettings::read(&root.section("render")?, asks_for_k)?,

@@ -17,6 +17,7 @@ use crate::scene::error::Problem;
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
 /// | `bounces` | integer | | 8 | 1 to 1024 | collisions of a path before it ends in the lattice, where `gather` is `"bounce"` |
 /// | `filter` | `"auto"`, `"on"`, `"off"` | | `"auto"` | | whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias; `"auto"` is `"on"` where the image is made to a target error or a time, and where paths are bounced |
+/// | `background` | `"visible"`, `"holdout"` | | `"visible"` | | whether the camera sees environments; held out, they still light the medium, and what lies behind is composited by coverage |
 /// | `photons_only` | true, false | | false | | whether single scattering, too, comes from photons |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RenderSettings {
@@ -40,6 +41,26 @@ pub struct RenderSettings {
     pub filter: Option<bool>,
     /// Whether single scattering, too, comes from photons (for the lab).
     pub photons_only: bool,
+    /// Whether the camera sees environments.
+    #[serde(skip_serializing_if = "Background::is_visible")]
+    pub background: Background,
+}
+
+/// What the camera sees of environments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Background {
+    /// Their light, through the medium.
+    #[default]
+    Visible,
+    /// Nothing: another image goes there.
+    Holdout,
+}
+
+impl Background {
+    fn is_visible(&self) -> bool {
+        *self == Self::Visible
+    }
 }
 
 impl RenderSettings {
@@ -53,6 +74,7 @@ impl RenderSettings {
             "lattice",
             "bounces",
             "filter",
+            "background",
             "photons_only",
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
@@ -76,6 +98,7 @@ impl RenderSettings {
             bounces: bounces as u32,
             filter: table.choose("filter", &FILTERS)?.flatten(),
             photons_only,
+            background: table.choose("background", &BACKGROUNDS)?.unwrap_or_default(),
         })
     }
 }
@@ -91,6 +114,9 @@ const GATHERS: [(&str, Option<Gather>); 4] = [
     ("lattice", Some(Gather::Lattice)),
     ("bounce", Some(Gather::Bounce)),
 ];
+
+const BACKGROUNDS: [(&str, Background); 2] =
+    [("visible", Background::Visible), ("holdout", Background::Holdout)];
 
 fn read_count(table: &Table, key: &str, default: u64) -> Result<usize, Problem> {
     let count = table.get_or(key, default)?;
