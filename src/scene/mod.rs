@@ -18,6 +18,7 @@ mod hash;
 mod light_counts;
 mod overrides;
 mod plan;
+mod preset;
 mod tree;
 mod volume;
 
@@ -31,6 +32,7 @@ pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
 pub use overrides::Overrides;
 pub use plan::{MediumKind, Plan};
+pub use preset::Preset;
 pub use tree::Origin;
 
 use std::path::Path;

@@ -62,6 +62,11 @@ pub(super) fn read(path: &Path) -> Result<Node, SceneError> {
     })
 }
 
+/// TOML that is part of the program; `None` if it cannot be read.
+pub(super) fn parse_toml(text: &str) -> Option<Node> {
+    toml::parse(text).ok()
+}
+
 /// What a parser could not read.
 struct SyntaxError {
     line: usize,
@@ -112,6 +117,16 @@ impl Node {
         let table = self.entry(section, || Value::Table(Vec::new()));
         if let Some(node) = table.and_then(|table| table.entry(key, || value.clone())) {
             *node = Node { origin: Origin::Override, value };
+        }
+    }
+
+    /// Says of the value and all it holds that it was written there.
+    pub fn place(&mut self, origin: Origin) {
+        self.origin = origin;
+        match &mut self.value {
+            Value::List(items) => items.iter_mut().for_each(|item| item.place(origin)),
+            Value::Table(entries) => entries.iter_mut().for_each(|(_, node)| node.place(origin)),
+            _ => {}
         }
     }
 
