@@ -19,6 +19,7 @@ mod light_counts;
 mod overrides;
 mod plan;
 mod preset;
+mod schema;
 mod tree;
 mod volume;
 
@@ -33,6 +34,7 @@ pub use light_counts::LightCounts;
 pub use overrides::Overrides;
 pub use plan::{MediumKind, Plan};
 pub use preset::Preset;
+pub use schema::{json_schema, scene_reference};
 pub use tree::Origin;
 
 use std::path::Path;
