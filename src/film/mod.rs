@@ -27,7 +27,7 @@ pub use exr_read::{read_rgb, read_variance};
 pub use exr_write::write_exr;
 pub use layers::ExtraLayers;
 pub use metadata::RenderMetadata;
-pub use preview::write_preview_png;
+pub use preview::{tone_mapped, write_preview_png};
 pub use rgb_image::RgbImage;
 
 use crate::math::{Rgb, mean_channel};
