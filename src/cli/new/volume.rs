@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use photonvdb::math::{DVec3, Ray, Span, max_channel};
+use photonvdb::math::{DAffine3, DVec3, Ray, Span, max_channel};
 use photonvdb::medium::grid::{BrickPrecision, DensityGrid};
 use photonvdb::medium::vdb::{
     GridSummary, Limits, SparseGrid, VdbFile, VolumeSource, find_density,
@@ -80,18 +80,15 @@ impl Volume {
         let grid =
             DensityGrid::build(&sparse, BrickPrecision::Single, &file.limits_beside(&limits))
                 .map_err(|error| unusable(error.to_string()))?;
-        let max_density = f64::from(grid.statistics().max_density);
-        let unit = GridExtinction::new(grid, sparse.index_to_world, 1.0);
-        let Some(Bounds::Parallelepiped(shape)) = unit.bounds() else {
+        let trial_scale = trial_scale(&grid, &sparse.index_to_world);
+        let extinction = GridExtinction::new(grid, sparse.index_to_world, trial_scale);
+        let Some(Bounds::Parallelepiped(shape)) = extinction.bounds() else {
             return Err(unusable("no density is above 0".into()));
         };
         let [u, v, w] = shape.edges();
         let bit = |corner: usize, axis: usize| (corner >> axis & 1) as f64;
         let corner = |c| shape.corner() + bit(c, 0) * u + bit(c, 1) * v + bit(c, 2) * w;
         let corners = (0..8).map(corner).collect();
-        let trial_scale = 1.0 / (max_density * (u.length() + v.length() + w.length()));
-        let grid = unit.into_grid();
-        let extinction = GridExtinction::new(grid, sparse.index_to_world, trial_scale);
         Ok(Self { file, limits, density, extinction, corners, trial_scale })
     }
 
@@ -182,6 +179,16 @@ impl Volume {
         let values = sparse.values.iter().copied().chain(tiles);
         Ok(values.fold(0.0, f32::max).into())
     }
+}
+
+/// A scale at which no way through a grid is deeper than 1 \[1/m per value\].
+fn trial_scale(grid: &DensityGrid, index_to_world: &DAffine3) -> f64 {
+    let Some((min, max)) = grid.render_bounds() else { return 1.0 };
+    let [x, y, z] = (max - min).to_array();
+    let edges = index_to_world.matrix3;
+    let way =
+        (edges.x_axis * x).length() + (edges.y_axis * y).length() + (edges.z_axis * z).length();
+    1.0 / (way * f64::from(grid.statistics().max_density))
 }
 
 /// The grid named, or the one that looks most like a density.

@@ -73,11 +73,6 @@ impl GridExtinction {
         &self.grid
     }
 
-    /// The densities, taken out of the world.
-    pub fn into_grid(self) -> DensityGrid {
-        self.grid
-    }
-
     /// The distance at which the optical depth from the span's start reaches `optical_depth`; `None` if it
     /// does not within the span.
     pub fn distance_at(&self, ray: &Ray, span: Span, optical_depth: f64) -> Option<f64> {

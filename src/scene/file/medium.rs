@@ -13,8 +13,7 @@ use crate::math::Rgb;
 use crate::medium::grid::BrickPrecision;
 use crate::scene::error::Problem;
 
-/// `[medium]`: what scatters and absorbs; one of two kinds. All it is surrounded by is empty space. `preset` names a
-/// [`Preset`](crate::scene::Preset), which fills in `sigma_t`, `albedo` and `phase` where they are not given.
+/// `[medium]`: what scatters and absorbs; one of two kinds. All it is surrounded by is empty space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 #[allow(missing_docs)]
@@ -23,7 +22,7 @@ pub enum MediumSection {
     ///
     /// | key | type | unit | default | range | meaning |
     /// |---|---|---|---|---|---|
-    /// | `preset` | text | | none | | what fills in `sigma_t`, `albedo` and `phase` |
+    /// | `preset` | text | | none | | a [`Preset`](crate::scene::Preset), which fills in `sigma_t`, `albedo` and `phase` |
     /// | `bounds` | table or `"infinite"` | | required | | see [`BoundsSection`] |
     /// | `sigma_t` | number or RGB | 1/m | required | at least 0 | extinction |
     /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
@@ -33,7 +32,7 @@ pub enum MediumSection {
     ///
     /// | key | type | unit | default | range | meaning |
     /// |---|---|---|---|---|---|
-    /// | `preset` | text | | none | | what fills in `density_scale`, `albedo` and `phase` |
+    /// | `preset` | text | | none | | a [`Preset`](crate::scene::Preset), which fills in `density_scale`, `albedo` and `phase` |
     /// | `file` | path | | required | | an OpenVDB file, relative to the scene file |
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |

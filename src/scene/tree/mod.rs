@@ -85,6 +85,16 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 }
 
 impl Node {
+    /// Says of the value and all it holds that it was written there.
+    pub fn place(&mut self, origin: Origin) {
+        self.origin = origin;
+        match &mut self.value {
+            Value::List(items) => items.iter_mut().for_each(|item| item.place(origin)),
+            Value::Table(entries) => entries.iter_mut().for_each(|(_, node)| node.place(origin)),
+            _ => {}
+        }
+    }
+
     /// Where the value at a key path such as `light[2].intensity` was written, or the deepest table around it.
     pub fn origin_of(&self, path: &str) -> Origin {
         let mut node = self;
@@ -117,16 +127,6 @@ impl Node {
         let table = self.entry(section, || Value::Table(Vec::new()));
         if let Some(node) = table.and_then(|table| table.entry(key, || value.clone())) {
             *node = Node { origin: Origin::Override, value };
-        }
-    }
-
-    /// Says of the value and all it holds that it was written there.
-    pub fn place(&mut self, origin: Origin) {
-        self.origin = origin;
-        match &mut self.value {
-            Value::List(items) => items.iter_mut().for_each(|item| item.place(origin)),
-            Value::Table(entries) => entries.iter_mut().for_each(|(_, node)| node.place(origin)),
-            _ => {}
         }
     }
 
