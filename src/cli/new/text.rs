@@ -22,9 +22,10 @@ impl SceneText {
     }
 }
 
+/// The count stays open, so that a target error or a time budget may choose it.
 const PHOTONS: &str = "\
 [photons]
-count = 1_000_000               # a pass; --target-error 0.02 makes as many passes as it takes
+# count = 1_000_000             # a pass; where it is left open, --target-error and --time-budget choose
 ";
 
 /// A line of a key with its comment, aligned where the value is short.
