@@ -52,7 +52,7 @@
 //!
 //! A [`LitScene`](render::LitScene) is a scene with its photon map. Each thread takes a
 //! [`LightReader`](render::LightReader) of its own and asks for the light along a segment of a ray, and its
-//! transmittance. `examples/host_renderer.rs` composites surfaces of its own that way.
+//! transmittance. `examples/03_host_renderer.rs` composites surfaces of its own that way.
 //!
 //! # Conventions
 //!

@@ -12,13 +12,20 @@ use photonvdb::scene::{Overrides, Scene};
 use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
+use super::completions::CompletionsArguments;
 use super::count::{parse_count, parse_positive, parse_resolution};
+use super::man::ManArguments;
+use super::new::args::NewArguments;
+use super::presets::PresetsArguments;
 use super::reference::args::ReferenceArguments;
+use super::schema::SchemaArguments;
 use super::sweep::args::SweepArguments;
 use super::validate::ValidateArguments;
 
 const EXAMPLES: &str = "\
 Examples:
+  photonvdb new plume.toml --from plume.vdb
+      A scene around a volume, to start from.
   photonvdb render fog.toml -o fog.exr --preview fog.png
       Render a scene and look at it.
   photonvdb render cloud.toml -o cloud.exr --photons 1e7 --passes 16
@@ -48,6 +55,8 @@ const RENDER_EXAMPLES: &str = "\
 Examples:
   photonvdb render fog.toml -o fog.exr --resolution 320x180 --photons 1e5
       A quick draft.
+  photonvdb render fog.toml -o fog.exr --resolution 160x90 --photons 1e5 --show
+      A look at it in the terminal.
   photonvdb render fog.toml -o fog.exr --target-error 0.02
       As many passes as it takes to be within 2 %, noise and bias; --time-budget 60 for the best of a minute.
   photonvdb render smoke.toml -o smoke.exr --holdout --half --layers depth,lights
@@ -94,6 +103,8 @@ pub struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Write a scene to start from: around a .vdb, or of a preset
+    New(NewArguments),
     /// Render a scene to OpenEXR
     Render(Box<RenderArguments>),
     /// Render a scene without photons and without bias, however long it takes: what others are compared with
@@ -110,6 +121,14 @@ pub enum Command {
     Convert(ConvertArguments),
     /// Check what the renderer measures against exact answers
     Validate(ValidateArguments),
+    /// List the media known by name
+    Presets(PresetsArguments),
+    /// Print what a scene file may say, as JSON Schema or in words
+    Schema(SchemaArguments),
+    /// Print a completion script for a shell
+    Completions(CompletionsArguments),
+    /// Write manual pages
+    Man(ManArguments),
 }
 
 /// `photonvdb render`
@@ -225,6 +244,10 @@ pub struct RenderArguments {
     /// Tone-mapped picture for a quick look
     #[arg(long, value_name = "OUT.png")]
     pub preview: Option<PathBuf>,
+
+    /// Show the picture in the terminal, small, in half blocks
+    #[arg(long)]
+    pub show: bool,
 
     /// Reading volumes
     #[command(flatten)]

@@ -8,20 +8,26 @@ mod args;
 mod bias;
 mod bytes;
 mod compare;
+mod completions;
 mod convert;
 mod count;
 mod error;
 mod inspect;
 mod interrupt;
+mod man;
+mod new;
+mod presets;
 mod progress;
 mod reference;
 mod render;
 mod report;
 mod resources;
+mod schema;
 mod settings;
 mod summary;
 mod sweep;
 mod table_outputs;
+mod terminal_picture;
 mod text_file;
 mod validate;
 
@@ -37,6 +43,7 @@ use error::CliError;
 /// Runs the command typed.
 pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
+        Command::New(arguments) => new::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
@@ -45,6 +52,10 @@ pub fn run() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
+        Command::Presets(arguments) => presets::run(&arguments),
+        Command::Schema(arguments) => schema::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
     };
     match finished {
         Ok(()) => ExitCode::SUCCESS,

@@ -19,6 +19,7 @@ use super::report::{CalibrationFigures, Comparison, Report, Seconds, is_stdout};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
+use super::terminal_picture;
 use super::text_file::write_json;
 use super::thread_pool;
 
@@ -82,6 +83,9 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     if let Some((path, reference)) = reference {
         let error = compare(&RgbImage::from(&rendering.film), &reference)?;
         report.comparison = Some(Comparison::new(path, error));
+    }
+    if arguments.show {
+        terminal_picture::show(&rendering.film).map_err(CliError::Stderr)?;
     }
     report.seconds.total = seconds_before + started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {

@@ -29,7 +29,7 @@ pub use exr_write::write_exr;
 pub use layers::ExrOptions;
 pub use metadata::RenderMetadata;
 pub use pixel_depths::PixelDepths;
-pub use preview::write_preview_png;
+pub use preview::{tone_mapped, write_preview_png};
 pub use rgb_image::RgbImage;
 
 use crate::math::{Rgb, mean_channel};

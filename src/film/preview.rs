@@ -25,9 +25,7 @@ const WHITE_LEVEL: f64 = 0.85;
 /// # Errors
 /// [`FilmError::Write`]; the old file, if any, is then untouched.
 pub fn write_preview_png(path: &Path, film: &Film, exposure: Option<f64>) -> Result<(), FilmError> {
-    let exposure = exposure.unwrap_or_else(|| automatic_exposure(film));
-    let radiance = film.pixels.iter().flat_map(|pixel| pixel.radiance().to_array());
-    let bytes: Vec<u8> = radiance.map(|value| srgb_byte(shoulder(value * exposure))).collect();
+    let bytes = tone_mapped(film, exposure);
     write_beside(path, |file| {
         let dimension = |size| u32::try_from(size).map_err(io::Error::other);
         let mut encoder = png::Encoder::new(
@@ -39,10 +37,17 @@ pub fn write_preview_png(path: &Path, film: &Film, exposure: Option<f64>) -> Res
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let mut writer = encoder.write_header()?;
-        writer.write_image_data(&bytes)?;
+        writer.write_image_data(bytes.as_flattened())?;
         writer.finish()?;
         Ok(())
     })
+}
+
+/// The pixels of `film` as 8-bit sRGB over black, exposed as by [`write_preview_png`].
+pub fn tone_mapped(film: &Film, exposure: Option<f64>) -> Vec<[u8; 3]> {
+    let exposure = exposure.unwrap_or_else(|| automatic_exposure(film));
+    let byte = |radiance: f64| srgb_byte(shoulder(radiance * exposure));
+    film.pixels.iter().map(|pixel| pixel.radiance().to_array().map(byte)).collect()
 }
 
 /// The factor that brings the 99th percentile of the lit pixels to [`WHITE_LEVEL`]; 1 for a black film.

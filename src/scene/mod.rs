@@ -20,6 +20,8 @@ mod loaded_grids;
 mod media;
 mod overrides;
 mod plan;
+mod preset;
+mod schema;
 mod settings;
 mod tree;
 mod volume;
@@ -34,6 +36,8 @@ pub use grid_use::{GridRole, GridUse};
 pub use light_counts::LightCounts;
 pub use overrides::Overrides;
 pub use plan::{MediumKind, Plan};
+pub use preset::Preset;
+pub use schema::{json_schema, scene_reference};
 pub use tree::Origin;
 
 use std::path::Path;

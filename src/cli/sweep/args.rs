@@ -32,9 +32,9 @@ Examples:
   photonvdb reference fog.toml -o truth.exr --resolution 128x128 --target-error 0.005
   photonvdb sweep fog.toml --reference truth.exr --csv sweep.csv --timing
       Against a reference made before, at its size.
-  photonvdb sweep fog.toml --gather knn --photons 1e5,1e6 --k 5,10,20,50,100 --divisor k,k-1 --spp none --target-error none
+  photonvdb sweep fog.toml --gather knn --k 10,50 --divisor k,k-1 --spp none --target-error none
       Nothing but k-nearest estimates.
-  photonvdb sweep fog.toml --gather lattice --photons 1e5 --lattice 16,32,64 --samples 1,4,16 --emission random,sobol
+  photonvdb sweep fog.toml --gather lattice --lattice 16,32,64 --samples 1,4 --emission random,sobol
       Cells, rays a pixel and emission of the lattice.";
 
 /// `photonvdb sweep`

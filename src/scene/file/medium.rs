@@ -27,6 +27,7 @@ pub enum MediumSection {
     ///
     /// | key | type | unit | default | range | meaning |
     /// |---|---|---|---|---|---|
+    /// | `preset` | text | | none | | a [`Preset`](crate::scene::Preset), which fills in `sigma_t`, `albedo` and `phase` |
     /// | `bounds` | table or `"infinite"` | | required | | see [`BoundsSection`] |
     /// | `sigma_t` | number or RGB | 1/m | required | at least 0 | extinction |
     /// | `albedo` | number or RGB | | required | \[0, 1\] | sigma_s / sigma_t |
@@ -36,6 +37,7 @@ pub enum MediumSection {
     ///
     /// | key | type | unit | default | range | meaning |
     /// |---|---|---|---|---|---|
+    /// | `preset` | text | | none | | a [`Preset`](crate::scene::Preset), which fills in `density_scale`, `albedo` and `phase` |
     /// | `file` | path | | required | | an OpenVDB file, relative to the scene file |
     /// | `density` | text | | `"density"`, else the only float grid | | name of the grid |
     /// | `density_scale` | number | 1/m per grid value | 1 | at least 0 | extinction of value 1 |
@@ -68,10 +70,11 @@ pub enum MediumSection {
     },
 }
 
-const HOMOGENEOUS_KEYS: [&str; 5] = ["kind", "bounds", "sigma_t", "albedo", "phase"];
+const HOMOGENEOUS_KEYS: [&str; 6] = ["kind", "preset", "bounds", "sigma_t", "albedo", "phase"];
 
-const VDB_KEYS: [&str; 10] = [
+const VDB_KEYS: [&str; 11] = [
     "kind",
+    "preset",
     "file",
     "density",
     "density_scale",

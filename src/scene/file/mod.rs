@@ -33,6 +33,7 @@ use serde::{Serialize, Serializer};
 
 use super::error::{Problem, SceneError};
 use super::overrides::Overrides;
+use super::preset;
 use super::tree::{self, Node};
 use table::Table;
 
@@ -77,7 +78,7 @@ impl SceneFile {
     ) -> Result<(Self, Node), SceneError> {
         let mut tree = tree::read(path)?;
         overrides.apply(&mut tree);
-        match Self::read(&tree) {
+        match preset::apply(&mut tree).and_then(|()| Self::read(&tree)) {
             Ok(file) => Ok((file, tree)),
             Err(problem) => Err(problem.locate(path, &tree)),
         }

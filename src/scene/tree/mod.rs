@@ -62,6 +62,11 @@ pub(super) fn read(path: &Path) -> Result<Node, SceneError> {
     })
 }
 
+/// TOML that is part of the program; `None` if it cannot be read.
+pub(super) fn parse_toml(text: &str) -> Option<Node> {
+    toml::parse(text).ok()
+}
+
 /// What a parser could not read.
 struct SyntaxError {
     line: usize,
@@ -80,6 +85,16 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 }
 
 impl Node {
+    /// Says of the value and all it holds that it was written there.
+    pub fn place(&mut self, origin: Origin) {
+        self.origin = origin;
+        match &mut self.value {
+            Value::List(items) => items.iter_mut().for_each(|item| item.place(origin)),
+            Value::Table(entries) => entries.iter_mut().for_each(|(_, node)| node.place(origin)),
+            _ => {}
+        }
+    }
+
     /// Where the value at a key path such as `light[2].intensity` was written, or the deepest table around it.
     pub fn origin_of(&self, path: &str) -> Origin {
         let mut node = self;

@@ -1,7 +1,7 @@
 //! The shortest way from a scene file to an image: fog with a spot light.
 //!
 //! ```sh
-//! cargo run --release --example fog_spot
+//! cargo run --release --example 01_fog_spot
 //! ```
 
 use std::path::Path;

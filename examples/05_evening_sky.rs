@@ -1,7 +1,7 @@
 //! Makes the sky of the example scenes: an evening gradient, as a latitude-longitude EXR.
 //!
 //! ```sh
-//! cargo run --release --example evening_sky
+//! cargo run --release --example 05_evening_sky
 //! ```
 
 use exr::prelude::write_rgb_file;

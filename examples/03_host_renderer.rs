@@ -6,7 +6,7 @@
 //! hides the fog behind it, but casts no shadow into it.
 //!
 //! ```sh
-//! cargo run --release --example host_renderer
+//! cargo run --release --example 03_host_renderer
 //! ```
 
 use std::path::Path;

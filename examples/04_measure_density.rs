@@ -6,7 +6,7 @@
 //! of a curved density over the query's ball is not the density at its centre. It is printed beside.
 //!
 //! ```sh
-//! cargo run --release --example measure_density
+//! cargo run --release --example 04_measure_density
 //! ```
 
 use std::f64::consts::PI;

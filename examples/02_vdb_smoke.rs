@@ -1,7 +1,7 @@
 //! A density grid from an OpenVDB file: what the file holds, and a draft of it in evening light.
 //!
 //! ```sh
-//! cargo run --release --example vdb_smoke
+//! cargo run --release --example 02_vdb_smoke
 //! ```
 
 use std::path::Path;
