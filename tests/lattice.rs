@@ -77,44 +77,69 @@ fn mean(film: &Film) -> f64 {
     sum / film.pixels.len() as f64
 }
 
-/// Means of images over 16 independent renders and over 512 paths a pixel. Cells of finite size may be off by 1 %.
+/// Means of images over 16 independent renders against those over 512 paths a pixel. `allowed` is the share that they may be off by.
+fn assert_agrees(name: &str, text: &str, gather: &str, allowed: f64) {
+    let batches: Vec<f64> = (0..16)
+        .map(|seed| {
+            let overrides = Overrides {
+                photons: Some(16384),
+                seed: Some(seed),
+                gather: Some(gather.into()),
+                bounces: (gather == "bounce").then_some(2),
+                ..Overrides::default()
+            };
+            let scene = scene(name, text, &overrides);
+            mean(&render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap().film)
+        })
+        .collect();
+    let found = batches.iter().sum::<f64>() / 16.0;
+    let squares = batches.iter().map(|batch| (batch - found).powi(2)).sum::<f64>();
+    let limits = Limits { samples: Some(512), ..Limits::default() };
+    let scene = scene(name, text, &Overrides::default());
+    let reference = render_reference(&scene, &limits, &Unwatched).unwrap();
+    let pixels = reference.film.pixels.len() as f64;
+    let variance: f64 =
+        reference.film.pixels.iter().map(|pixel| pixel.variance.max_element()).sum();
+    let error = (squares / 15.0 / 16.0 + variance / (pixels * pixels)).sqrt();
+    let difference = (found - reference.mean).abs();
+    let allowed = 4.5 * error + allowed * reference.mean;
+    assert!(difference < allowed, "{name}, {gather}: {found} for {} +- {error}", reference.mean);
+    assert!(error < 0.02 * reference.mean, "{name}: a test that tells something: {error}");
+}
+
+/// Cells of finite size may be off by 1 %.
 #[test]
 fn images_agree_with_paths() {
     for (name, text) in scenes() {
-        let batches: Vec<f64> = (0..16)
-            .map(|seed| {
-                let overrides = Overrides {
-                    photons: Some(16384),
-                    seed: Some(seed),
-                    gather: Some("lattice".into()),
-                    ..Overrides::default()
-                };
-                let scene = scene(name, &text, &overrides);
-                mean(&render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap().film)
-            })
-            .collect();
-        let found = batches.iter().sum::<f64>() / 16.0;
-        let squares = batches.iter().map(|batch| (batch - found).powi(2)).sum::<f64>();
-        let limits = Limits { samples: Some(512), ..Limits::default() };
-        let scene = scene(name, &text, &Overrides::default());
-        let reference = render_reference(&scene, &limits, &Unwatched).unwrap();
-        let pixels = reference.film.pixels.len() as f64;
-        let variance: f64 =
-            reference.film.pixels.iter().map(|pixel| pixel.variance.max_element()).sum();
-        let error = (squares / 15.0 / 16.0 + variance / (pixels * pixels)).sqrt();
-        let difference = (found - reference.mean).abs();
-        let allowed = 4.5 * error + 0.01 * reference.mean;
-        assert!(difference < allowed, "{name}: {found} for {} +- {error}", reference.mean);
-        assert!(error < 0.02 * reference.mean, "{name}: a test that tells something: {error}");
+        assert_agrees(name, &text, "lattice", 0.01);
+    }
+}
+
+/// After two bounces little is left of what cells are off by: also where light comes from all around, from an area or in a medium that scatters forward.
+#[test]
+fn bounced_paths_agree_with_paths() {
+    let lit = format!(
+        "{CAMERA}[medium]\nkind = \"homogeneous\"\nbounds = {{ min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }}\nsigma_t = 8.0\nalbedo = 0.98\n"
+    );
+    let quad = "[[light]]\nkind = \"quad\"\ncorner = [-0.5, 1.5, -0.5]\nedge_u = [1.0, 0.0, 0.0]\nedge_v = [0.0, 0.0, 1.0]\nradiance = 2.0\n";
+    let dense = [
+        ("dense, sun", format!("{lit}{SUN}")),
+        ("dense, sky and quad", format!("{lit}{SKY}{quad}")),
+    ];
+    for (name, text) in scenes().into_iter().chain(dense) {
+        assert_agrees(name, &text, "bounce", 0.005);
     }
 }
 
 #[test]
 fn any_number_of_threads_gives_the_same_pixels() {
-    for (name, text) in scenes() {
-        let scene =
-            scene(name, &text, &Overrides { photons: Some(20_000), ..Overrides::default() });
-        assert_eq!(scene.render.gather, Gather::Lattice);
+    for ((name, text), bounces) in
+        scenes().into_iter().flat_map(|scene| [(scene.clone(), false), (scene, true)])
+    {
+        let gather = bounces.then(|| "bounce".to_string());
+        let overrides = Overrides { photons: Some(20_000), gather, ..Overrides::default() };
+        let scene = scene(name, &text, &overrides);
+        assert_eq!(scene.render.gather, if bounces { Gather::Bounce } else { Gather::Lattice });
         let films: Vec<Film> = [1, 2, 7]
             .into_iter()
             .map(|threads| {
@@ -148,6 +173,31 @@ fn estimated_errors_are_those_against_references() {
         let ratio = (measured * measured - noise * noise).max(0.0).sqrt() / estimated;
         assert!((1.0 / 1.5..1.5).contains(&ratio), "{name}: {measured} for {estimated}");
     }
+}
+
+/// Where light is scattered many times faces are bright within less than a cell: paths are bounced, and what the image says of its error, filter
+/// and all, is right. The reference is made here, of noise far below.
+#[test]
+fn dense_fog_is_bounced_and_knows_its_error() {
+    let text = format!(
+        "{CAMERA}[medium]\nkind = \"homogeneous\"\nbounds = {{ min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }}\nsigma_t = 10.0\nalbedo = 0.95\n{SUN}"
+    );
+    let sizes = Overrides { resolution: Some([48, 36]), ..Overrides::default() };
+    let scene = scene("dense", &text, &sizes);
+    assert_eq!(scene.render.gather, Gather::Bounce);
+    let limits = Limits { samples: Some(4096), ..Limits::default() };
+    let reference = render_reference(&scene, &limits, &Unwatched).unwrap();
+    let noise = reference.progress.relative_error;
+    let options = RenderOptions { target_error: Some(0.08), ..RenderOptions::passes(1000) };
+    let made = render(&scene, &options, &Unobserved).unwrap();
+    let image = photonvdb::film::RgbImage::from(&made.film);
+    let truth = photonvdb::film::RgbImage::from(&reference.film);
+    let measured = compare(&image, &truth).unwrap().rel_rmse;
+    let estimated = made.report.error.unwrap().total();
+    assert!(estimated <= 0.08 && noise < 0.03, "{estimated} {noise}");
+    assert!(made.report.filter_radius > 0, "{:?}", made.report);
+    let ratio = (measured * measured - noise * noise).max(0.0).sqrt() / estimated;
+    assert!((1.0 / 1.5..1.5).contains(&ratio), "{measured} for {estimated}, reference {noise}");
 }
 
 /// With a limit of time alone the image is the best of that time, and it has an error to tell.

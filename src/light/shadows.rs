@@ -188,3 +188,42 @@ pub fn transmittance_to<E: Extinction>(
     let inside = medium.bounds.intersect(&ray).and_then(|s| s.intersect(Span::new(0.0, distance)));
     inside.map_or(Rgb::ONE, |span| extinction.transmittance(&ray, span))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// Columns of a cloud hold what exact walks find, to what they measure of themselves; and where they are to be fewer than it takes, there
+    /// are none.
+    #[test]
+    fn columns_hold_the_optical_depth() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let scene = Scene::load(&root.join("tests/scenes/smoke_sun.toml")).unwrap();
+        let crate::medium::MediumExtinction::Grid(grid) = &scene.medium.extinction else {
+            panic!("a grid");
+        };
+        let shadows = Shadows::of(&scene.lights, &scene.medium, &**grid, 1 << 16);
+        let Light::Directional(sun) = &scene.lights[0] else { panic!("a sun") };
+        let mut random = Stream::Experiment.random(5, 0);
+        let shape = scene.medium.bounds.parallelepiped().unwrap();
+        let (mut error, mut mean, mut count) = (0.0, 0.0, 0.0);
+        for _ in 0..4000 {
+            let [u, v, w]: [f64; 3] = std::array::from_fn(|_| uniform(&mut random));
+            let [a, b, c] = shape.edges();
+            let place = shape.corner() + a * u + b * v + c * w;
+            let far = f64::INFINITY;
+            let exact = transmittance_to(&scene.medium, &**grid, place, -sun.direction, far).x;
+            let found = shadows.transmittance(0, place).unwrap().x;
+            assert!((found - exact).abs() < 0.2, "{place}: {found} {exact}");
+            error += found - exact;
+            mean += exact;
+            count += 1.0;
+        }
+        // What is left of errors of either sign.
+        assert!((error / mean).abs() < 2e-3, "{} of {}", error / count, mean / count);
+        assert!(shadows.transmittance(1, DVec3::ZERO).is_none());
+        let few = Shadows::of(&scene.lights, &scene.medium, &**grid, 100);
+        assert!(few.transmittance(0, DVec3::ZERO).is_none());
+    }
+}
