@@ -70,7 +70,9 @@ fn collect(path: &str, rule: &Value, scene: &Value, places: &mut Vec<Place>) {
 }
 
 fn variants(rule: &Value) -> Vec<&Value> {
-    rule["oneOf"].as_array().map_or_else(|| vec![rule], |rules| rules.iter().collect())
+    rule["oneOf"]
+        .as_array()
+        .map_or_else(|| vec![rule], |rules| rules.iter().flat_map(variants).collect())
 }
 
 fn is_table(rule: &Value) -> bool {
@@ -125,7 +127,7 @@ fn sample(rule: &Value, key: &str, count: &mut u32) -> Value {
             json!([n, n * n, 3 * n + 1])
         }
         "string" => rule["enum"].get(0).cloned().unwrap_or("x".into()),
-        "number" => json!(0.5),
+        "number" => json!(rule["minimum"].as_f64().map_or(0.5, |least| least.max(0.5))),
         "integer" => rule["minimum"].clone(),
         "boolean" => true.into(),
         other => panic!("{other} is no type"),

@@ -90,14 +90,14 @@ impl Phase {
         match self {
             Self::Isotropic => ISOTROPIC,
             Self::HenyeyGreenstein { g } => lobe::henyey_greenstein(g, cosine),
-            ref lobes => lobes.density_of_lobes(cosine),
+            lobes => lobes.density_of_lobes(cosine),
         }
     }
 
     /// Apart, so that the phase functions above, asked in every cell that a photon crosses, compile as if there were no others.
     #[inline(never)]
-    fn density_of_lobes(&self, cosine: f64) -> f64 {
-        match *self {
+    fn density_of_lobes(self, cosine: f64) -> f64 {
+        match self {
             Self::Draine(lobe) => lobe.density(cosine),
             Self::TwoLobes { first, second, share } => {
                 share * first.density(cosine) + (1.0 - share) * second.density(cosine)
@@ -121,7 +121,7 @@ impl Phase {
             Self::HenyeyGreenstein { g } => {
                 lobe::henyey_greenstein_cosine(g, 2.0 * uniform(random) - 1.0)
             }
-            ref lobes => lobes.sample_cosine_of_lobes(random),
+            lobes => lobes.sample_cosine_of_lobes(random),
         };
         let phi = 2.0 * PI * uniform(random);
         let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
@@ -131,8 +131,8 @@ impl Phase {
 
     /// Apart as [`Self::density_of_lobes`] is.
     #[inline(never)]
-    fn sample_cosine_of_lobes(&self, random: &mut impl Rng) -> f64 {
-        let lobe = match *self {
+    fn sample_cosine_of_lobes(self, random: &mut impl Rng) -> f64 {
+        let lobe = match self {
             Self::Isotropic => Lobe::henyey_greenstein(0.0),
             Self::HenyeyGreenstein { g } => Lobe::henyey_greenstein(g),
             Self::Draine(lobe) => lobe,
