@@ -147,7 +147,7 @@ fn many_lights(gather: Gather) -> Scene {
 
 #[test]
 fn lights_add_up_to_the_image() {
-    for gather in [Gather::Knn, Gather::Lattice] {
+    for gather in [Gather::Knn, Gather::Lattice, Gather::Bounce] {
         let film = film(&many_lights(gather), LIGHTS);
         let names: Vec<&str> = film.lights.iter().map(|light| light.name.as_str()).collect();
         assert_eq!(names, ["sun", "1", "bulbs", "4"]);
@@ -169,7 +169,7 @@ fn a_layer_is_the_image_of_its_light() {
         let values: Vec<f64> = radiance.map(mean_channel).collect();
         values.iter().sum::<f64>() / values.len() as f64
     };
-    for gather in [Gather::Knn, Gather::Lattice] {
+    for gather in [Gather::Knn, Gather::Lattice, Gather::Bounce] {
         let layered: [Runs; 4] = over_seeds(&mut many_lights(gather), |scene| {
             let film = film(scene, LIGHTS);
             let layer = |index: usize| mean(&mut film.lights[index].radiance.iter().copied());

@@ -97,6 +97,9 @@ fn a_resumed_render_is_the_same_byte_for_byte() {
         (example("fog_point.toml", with_gather("lattice")), five),
         (example("cloud_sky.toml", with_gather("lattice")), layered),
         (example("fire.toml", with_gather("knn")), layered),
+        (example("fire.toml", with_gather("bounce")), layered),
+        (example("fog_point.toml", with_gather("bounce")), five),
+        (example("cloud_sky.toml", with_gather("bounce")), target),
         (example("smoke_sun.toml", with_gather("lattice")), target),
         (example("fog_point.toml", with_gather("knn")), target),
     ] {
@@ -112,7 +115,7 @@ fn a_resumed_render_is_the_same_byte_for_byte() {
             assert_same(&run(&scene, &options, &path, 99), &whole);
         }
         fs::remove_file(&path).unwrap();
-        for _ in 1..20 {
+        for _ in 1..80 {
             run(&scene, &options, &path, 1);
         }
         // It is finished: nothing is rendered any more.
@@ -130,9 +133,12 @@ fn a_resumed_render_is_the_same_byte_for_byte() {
 #[test]
 fn passes_can_be_added() {
     let overrides = Overrides { lattice: Some(12), ..with_gather("lattice") };
-    for scene in
-        [example("fog_point.toml", overrides), example("fog_quad.json", with_gather("knn"))]
-    {
+    let bounced = Overrides { gather: Some("bounce".into()), ..overrides.clone() };
+    for scene in [
+        example("fog_point.toml", overrides),
+        example("fog_quad.json", with_gather("knn")),
+        example("fog_point.toml", bounced),
+    ] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("render.ckpt");
         run(&scene, &RenderOptions::passes(2), &path, 99);

@@ -21,7 +21,8 @@ impl LightGroups {
     /// All light at once, or, if layers of lights are asked for, light by light. Lights of one name share a layer.
     pub fn of(scene: &Scene, options: &RenderOptions) -> Self {
         let mut groups = Self { names: Vec::new(), parts: Vec::new() };
-        if !options.layers.lights {
+        let is_lit = !scene.lights.is_empty() || scene.medium.emissivity.is_some();
+        if !options.layers.lights || !is_lit {
             groups.parts.push((LightChoice::All, None));
             return groups;
         }

@@ -69,6 +69,8 @@ pub struct Passes<'a, E> {
     most_samples: [usize; 2],
     groups: LightGroups,
     state: RenderState,
+    /// Passes of which this run measured the error last.
+    measured_at: u32,
     /// Where the state is written after every pass.
     save_to: Option<&'a Path>,
     /// Seconds that the state had taken when this run began.
@@ -135,6 +137,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             groups,
             seconds_before: state.seconds,
             state,
+            measured_at: 0,
             save_to,
         }
     }
@@ -147,7 +150,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         while !self.has_ended() {
             self.refine();
             self.add_pass()?;
-            if self.state.report.passes_done >= self.state.next_measure || self.is_out_of_passes() {
+            if self.state.report.passes_done >= self.state.next_measure {
                 self.measure();
             }
             self.state.seconds = self.seconds();
@@ -161,6 +164,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
     /// Measures the error of the image, filtered where that is less, and says when to measure again.
     fn measure(&mut self) {
         let filters = self.filters();
+        self.measured_at = self.state.report.passes_done;
         let RenderState { probes, film, report, filter_radius, .. } = &mut self.state;
         let Some(error) = probes.error() else { return };
         report.error = Some(error);
@@ -200,7 +204,8 @@ impl<'a, E: Extinction> Passes<'a, E> {
 
     /// The image, filtered if the filter pays.
     fn finish(mut self) -> Rendering {
-        if self.state.report.passes_done + 1 >= self.state.next_measure {
+        // This is not kept: a render that goes on must measure when one would that never ended here.
+        if self.measured_at != self.state.report.passes_done {
             self.measure();
         }
         let filters = self.filters();
@@ -392,6 +397,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let finer = state.resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
         state.resolution = (finer as usize).min(MAX_LATTICE);
         state.restart_film();
+        self.measured_at = 0;
     }
 }
 

@@ -5,7 +5,7 @@
 //! distances are drawn by transmittance, one a stratum.
 
 use crate::film::PixelDepths;
-use crate::math::{Ray, Rgb, Span, mean_channel};
+use crate::math::{Ray, Span, mean_channel};
 use crate::medium::{Extinction, Medium, RayProfile};
 use crate::render::distances::ByTransmittance;
 
@@ -28,8 +28,8 @@ pub fn ray_depths<E: Extinction>(
     phase: f64,
 ) -> PixelDepths {
     let [scatter_distance, scatter_weight] = match E::IS_UNIFORM {
-        true => uniform_scattering(extinction.sigma_t(ray.at(span.start)), medium, ray, span),
-        false => sampled_scattering(medium, ray, span, profile, phase),
+        true => uniform_scattering(extinction, medium, ray, span),
+        false => sampled_scattering((extinction, medium), ray, span, profile, phase),
     };
     let half = half_distance(profile, span);
     PixelDepths {
@@ -60,8 +60,14 @@ fn half_distance(profile: &RayProfile, span: Span) -> Option<f64> {
 }
 
 /// The two integrals over a uniform medium, channel by channel.
-fn uniform_scattering(sigma_t: Rgb, medium: &Medium, ray: &Ray, span: Span) -> [f64; 2] {
-    let albedo = medium.albedo_at(ray.at(span.start));
+fn uniform_scattering<E: Extinction>(
+    extinction: &E,
+    medium: &Medium,
+    ray: &Ray,
+    span: Span,
+) -> [f64; 2] {
+    let place = ray.at(span.start);
+    let (sigma_t, albedo) = (extinction.sigma_t(place), extinction.albedo_at(medium, place));
     let mut sums = [0.0; 2];
     for channel in 0..3 {
         let depth = sigma_t[channel] * span.length();
@@ -80,8 +86,8 @@ fn uniform_scattering(sigma_t: Rgb, medium: &Medium, ray: &Ray, span: Span) -> [
     sums
 }
 
-fn sampled_scattering(
-    medium: &Medium,
+fn sampled_scattering<E: Extinction>(
+    (extinction, medium): (&E, &Medium),
     ray: &Ray,
     span: Span,
     profile: &RayProfile,
@@ -96,7 +102,8 @@ fn sampled_scattering(
         let u = (stratum as f64 + within) / STRATA as f64;
         // Extinction in a grid is grey: there is no channel to pick.
         let distance = by_transmittance.sample_distance(u, 0.0);
-        let weight = share * mean_channel(medium.albedo_at(ray.at(distance)));
+        let albedo = extinction.albedo_at(medium, ray.at(distance));
+        let weight = share * mean_channel(albedo);
         sums[0] += weight * distance;
         sums[1] += weight;
     }
