@@ -131,7 +131,8 @@ fn white_furnaces() {
             let light = if g == 0.0 { sky() } else { white_sky() };
             let scene = scene(medium(g), light, 1);
             let found = seen_through_the_middle(&scene, 400, |seen| seen.radiance().x);
-            found.assert_is(1.0, &format!("{name}, g {g}"));
+            // Paths tell of the sky where they leave: of those that cross the ball at once, 5e-5 of all, there may be none.
+            found.assert_within(1.0, 3e-4, &format!("{name}, g {g}"));
             assert!(found.error < 0.01, "{name}, g {g}: {found:?}");
         }
     }

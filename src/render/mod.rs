@@ -151,7 +151,7 @@ pub fn render_from(
     if matches!(scene.medium.bounds, Bounds::Infinite) {
         return Err(RenderError::InfiniteMedium);
     }
-    if scene.render.gather == Gather::Lattice && scene.medium.shared_phase().is_none() {
+    if scene.render.gather != Gather::Knn && scene.medium.shared_phase().is_none() {
         return Err(RenderError::NoLattice);
     }
     match &scene.medium.extinction {

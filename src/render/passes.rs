@@ -101,7 +101,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let mut resolution = 0;
         let strategy = match scene.render.gather {
             Gather::Knn => Strategy::Knn,
-            Gather::Lattice | Gather::Bounce => {
+            Gather::Auto | Gather::Lattice | Gather::Bounce => {
                 let photons = photons_per_pass(scene, options);
                 let mut total = photons.saturating_mul(u64::from(options.passes));
                 if is_limited {
@@ -406,7 +406,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
 pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
     let is_small = match scene.render.gather {
         Gather::Knn => false,
-        Gather::Lattice => options.has_limit(),
+        Gather::Auto | Gather::Lattice => options.has_limit(),
         Gather::Bounce => true,
     };
     if is_small && !scene.is_photon_count_given {

@@ -10,9 +10,13 @@ use crate::reference::PathTracer;
 use crate::render::photon_query::PhotonQuery;
 
 /// How scattered light is gathered from photons.
+///
+/// A [`Scene`](crate::scene::Scene) that was loaded has no `Auto`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Gather {
+    /// In a lattice, or by bounced paths where light is scattered many times.
+    Auto,
     /// From the k nearest photons of points along the camera's rays.
     Knn,
     /// From the lengths that photons fly in the cells of a lattice.

@@ -130,30 +130,28 @@ impl Scene {
             light_names: file.lights.iter().map(|named| named.name.clone()).collect(),
             photons: file.photons,
             estimate: file.estimate,
-            render: RenderSettings {
-                gather: gather_for(&medium, file.render.gather),
-                ..file.render
-            },
-            hash: hash::scene_hash(file, directory, &notes.hashes)?,
+            render: file.render,
+            hash: 0,
             medium,
             grids: notes.grids,
             is_photon_count_given: true,
             warnings: notes.warnings,
         };
-        // Where light is scattered many times it falls off within a mean free path of the medium's faces, less than a cell.
-        let is_open = scene.render.is_gather_open && scene.render.gather == Gather::Lattice;
-        if is_open && expected_collisions(&scene) >= MANY_COLLISIONS {
-            scene.render.gather = Gather::Bounce;
-        }
+        scene.render.gather = gather_for(&scene);
+        let as_rendered = SceneFile { render: scene.render, ..file.clone() };
+        scene.hash = hash::scene_hash(&as_rendered, directory, &notes.hashes)?;
         Ok(scene)
     }
 }
 
-/// How light is gathered in a medium: cells of a lattice hold light scattered by one phase function, and where volumes
-/// differ in theirs photons are asked instead.
-fn gather_for(medium: &Medium, wanted: Gather) -> Gather {
-    match medium.shared_phase() {
-        Some(_) => wanted,
-        None => Gather::Knn,
+/// How light is gathered in a scene: cells of a lattice hold light scattered by one phase function, and where volumes
+/// differ in theirs photons are asked instead. Where light is scattered many times it falls off within a mean free path of the medium's faces, less
+/// than a cell, and paths are bounced unless the scene says otherwise.
+fn gather_for(scene: &Scene) -> Gather {
+    match scene.render.gather {
+        _ if scene.medium.shared_phase().is_none() => Gather::Knn,
+        Gather::Auto if expected_collisions(scene) >= MANY_COLLISIONS => Gather::Bounce,
+        Gather::Auto => Gather::Lattice,
+        wanted => wanted,
     }
 }

@@ -142,7 +142,7 @@ impl fmt::Display for Plan {
         }
         write!(f, "{} photons a pass ({}), ", self.photons, self.emission)?;
         match self.gather {
-            Gather::Lattice => write!(f, "their flights gathered in a lattice"),
+            Gather::Auto | Gather::Lattice => write!(f, "their flights gathered in a lattice"),
             Gather::Bounce => write!(f, "in a lattice that ends the camera's paths"),
             Gather::Knn => write!(
                 f,

@@ -101,7 +101,6 @@ pub(super) fn scene(
             march_samples: 8,
             light_samples: 4,
             gather: Gather::Knn,
-            is_gather_open: false,
             bounces: 8,
             filter: None,
             lattice: None,

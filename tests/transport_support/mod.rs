@@ -94,7 +94,6 @@ pub fn scene(medium: Medium, light: Light, photon_count: u64) -> Scene {
             march_samples: 8,
             light_samples: 4,
             gather: Gather::Knn,
-            is_gather_open: false,
             bounces: 8,
             filter: None,
             lattice: None,

@@ -29,9 +29,6 @@ pub struct RenderSettings {
     pub light_samples: usize,
     /// How light scattered twice or more is gathered.
     pub gather: Gather,
-    /// Whether neither the file nor its keys say how: then the medium does.
-    #[serde(skip)]
-    pub is_gather_open: bool,
     /// Cells of the lattice along its longest side; `None`: by the number of photons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<usize>,
@@ -78,9 +75,8 @@ impl RenderSettings {
             "photons_only",
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
-        let default = if photons_only || asks_for_k { Gather::Knn } else { Gather::Lattice };
-        let asked = table.choose("gather", &GATHERS)?.flatten();
-        let gather = asked.unwrap_or(default);
+        let default = if photons_only || asks_for_k { Gather::Knn } else { Gather::Auto };
+        let gather = table.choose("gather", &GATHERS)?.flatten().unwrap_or(default);
         let needs_map = photons_only && gather != Gather::Knn;
         table.ensure("gather", !needs_map, "must be \"knn\" where photons_only is true")?;
         let lattice: Option<u64> = table.get("lattice")?;
@@ -93,7 +89,6 @@ impl RenderSettings {
             march_samples: read_count(table, "march_samples", 8)?,
             light_samples: read_count(table, "light_samples", 8)?,
             gather,
-            is_gather_open: asked.is_none() && gather == Gather::Lattice,
             lattice: lattice.map(|cells| cells as usize),
             bounces: bounces as u32,
             filter: table.choose("filter", &FILTERS)?.flatten(),
