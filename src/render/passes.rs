@@ -27,6 +27,9 @@ const PHOTONS_A_PIXEL: f64 = 2.0;
 /// The same where paths end in what the photons leave, which says little of the noise.
 const PHOTONS_A_PIXEL_OF_PATHS: f64 = 0.25;
 
+/// Photons of a pass that cost nothing beside its rays.
+const MIN_USEFUL_PHOTONS: f64 = 16384.0;
+
 /// The fewest and the most photons of such a pass.
 const PHOTONS_A_PASS: [u64; 2] = [1 << 12, 1 << 20];
 
@@ -42,8 +45,14 @@ const BIAS_NOISE: f64 = 0.1;
 /// The fewest photons of an estimate that k shrinks to: below, its noise is that of outliers.
 const FEWEST_OF_K: usize = 8;
 
-/// Passes from which the error is believed in.
-const FEWEST_FOR_ERROR: u32 = 4;
+/// Passes from which the error is believed in: of small images, and of those with more than [`MANY_PIXELS`].
+const FEWEST_FOR_ERROR: [u32; 2] = [4, 2];
+
+/// Pixels whose mean square is as good as known from one pass in each half.
+const MANY_PIXELS: usize = 1 << 17;
+
+/// Passes that the photons which a lattice is expected to take are divided into at least: its noise does not depend on the number of pixels.
+const FEWEST_PASSES: u64 = 4;
 
 /// Columns of shadows a pixel: beyond, its rays look fewer times towards the light than columns are made.
 const COLUMNS_A_PIXEL: usize = 4;
@@ -362,12 +371,18 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let done = self.state.report.passes_done;
         let within = |target: f64| {
             let error = self.state.report.error.map_or(f64::INFINITY, |error| error.total());
-            done >= FEWEST_FOR_ERROR && error <= target
+            done >= self.fewest_for_error() && error <= target
         };
         done > 0
             && (self.is_out_of_passes()
                 || self.options.target_error.is_some_and(within)
                 || self.observer.cancelled())
+    }
+
+    /// Passes from which the error is believed in.
+    fn fewest_for_error(&self) -> u32 {
+        let pixels = self.scene.camera.width * self.scene.camera.height;
+        FEWEST_FOR_ERROR[usize::from(pixels >= MANY_PIXELS)]
     }
 
     /// Whether there is no pass or no time left.
@@ -381,6 +396,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
 
     /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
     fn refine(&mut self) {
+        let fewest = self.fewest_for_error();
         let state = &mut self.state;
         // That of the lattice alone.
         let (Some(target), Some(error)) = (self.options.target_error, state.probes.error()) else {
@@ -391,7 +407,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let can = matches!(self.strategy, Strategy::Lattice { .. })
             && state.resolution < MAX_LATTICE
             && self.scene.render.lattice.is_none();
-        if state.report.passes_done < FEWEST_FOR_ERROR || too_much <= 1.0 || !can {
+        if state.report.passes_done < fewest || too_much <= 1.0 || !can {
             return;
         }
         let finer = state.resolution as f64 * (1.2 * too_much.sqrt()).clamp(1.2, 4.0);
@@ -414,7 +430,11 @@ pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
         let pixels = (scene.camera.width * scene.camera.height) as f64;
         let photons = match scene.render.gather {
             Gather::Bounce => PHOTONS_A_PIXEL_OF_PATHS * pixels,
-            _ => PHOTONS_A_PIXEL * pixels,
+            _ => {
+                let needed = options.target_error.map(|error| expected_photons(Some(error)));
+                let most = needed.map_or(f64::INFINITY, |photons| (photons / FEWEST_PASSES) as f64);
+                (PHOTONS_A_PIXEL * pixels).min(most.max(MIN_USEFUL_PHOTONS))
+            }
         };
         return (photons as u64).clamp(fewest, most);
     }
