@@ -173,7 +173,7 @@ pub struct RenderArguments {
     pub emission: Option<String>,
 
     /// How light scattered twice or more is gathered from photons: from the k nearest, from their flights in a lattice, or by
-    /// paths that bounce a few times and end in the lattice; auto takes the k nearest if anything is said of k or divisor [default: render.gather of the scene]
+    /// paths that bounce a few times and end in the lattice; auto bounces where light scatters many times, else takes the lattice [default: render.gather of the scene, else knn if anything is said of k or divisor, else auto]
     #[arg(long, value_name = "G", value_parser = PossibleValuesParser::new(["auto", "knn", "lattice", "bounce"]))]
     pub gather: Option<String>,
 

@@ -1,6 +1,6 @@
 //! `[render]`
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::table::Table;
 use crate::render::Gather;
@@ -13,7 +13,7 @@ use crate::scene::error::Problem;
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
 /// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
-/// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"knn"` with `photons_only` or any key of `[estimate]`, `"bounce"` in media where light scatters many times, else `"lattice"` |
+/// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"bounce"` in media where light scatters many times, else `"lattice"`; left out, `"knn"` with `photons_only` or any key of `[estimate]`, else `"auto"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |
 /// | `bounces` | integer | | 8 | 1 to 1024 | collisions of a path before it ends in the lattice, where `gather` is `"bounce"` |
 /// | `filter` | `"auto"`, `"on"`, `"off"` | | `"auto"` | | whether multiple scattering is smoothed from pixel to pixel, as far as the noise taken away exceeds the measured bias; `"auto"` is `"on"` where the image is made to a target error or a time, and where paths are bounced |
@@ -35,6 +35,7 @@ pub struct RenderSettings {
     /// Collisions of a path before it ends in the lattice.
     pub bounces: u32,
     /// Whether multiple scattering is filtered; `None`: where the image is made to a target error or a time.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "filter_word")]
     pub filter: Option<bool>,
     /// Whether single scattering, too, comes from photons (for the lab).
     pub photons_only: bool,
@@ -76,7 +77,10 @@ impl RenderSettings {
         ])?;
         let photons_only = table.get_or("photons_only", false)?;
         let default = if photons_only || asks_for_k { Gather::Knn } else { Gather::Auto };
-        let gather = table.choose("gather", &GATHERS)?.flatten().unwrap_or(default);
+        let gather = match table.choose("gather", &GATHERS)? {
+            Some(Gather::Auto) if photons_only => Gather::Knn,
+            asked => asked.unwrap_or(default),
+        };
         let needs_map = photons_only && gather != Gather::Knn;
         table.ensure("gather", !needs_map, "must be \"knn\" where photons_only is true")?;
         let lattice: Option<u64> = table.get("lattice")?;
@@ -102,13 +106,17 @@ impl RenderSettings {
 const FILTERS: [(&str, Option<bool>); 3] =
     [("auto", None), ("on", Some(true)), ("off", Some(false))];
 
-/// `None` stands for the plan's own choice.
-const GATHERS: [(&str, Option<Gather>); 4] = [
-    ("auto", None),
-    ("knn", Some(Gather::Knn)),
-    ("lattice", Some(Gather::Lattice)),
-    ("bounce", Some(Gather::Bounce)),
+const GATHERS: [(&str, Gather); 4] = [
+    ("auto", Gather::Auto),
+    ("knn", Gather::Knn),
+    ("lattice", Gather::Lattice),
+    ("bounce", Gather::Bounce),
 ];
+
+fn filter_word<S: Serializer>(filter: &Option<bool>, serializer: S) -> Result<S::Ok, S::Error> {
+    let word = FILTERS.iter().find(|(_, other)| other == filter).map_or("auto", |(word, _)| word);
+    serializer.serialize_str(word)
+}
 
 const BACKGROUNDS: [(&str, Background); 2] =
     [("visible", Background::Visible), ("holdout", Background::Holdout)];

@@ -382,7 +382,7 @@ const RENDER: Section = Section {
         key(
             "gather",
             Kind::Word(&["auto", "knn", "lattice", "bounce"]),
-            "how light scattered twice or more is gathered from photons: \"auto\" is \"knn\" with `photons_only` or any key of `[estimate]`, \"bounce\" where light scatters many times, else \"lattice\"",
+            "how light scattered twice or more is gathered from photons: \"auto\" is \"bounce\" where light scatters many times, else \"lattice\"; left out, \"knn\" with `photons_only` or any key of `[estimate]`",
         )
         .or("\"auto\"")
         .rule("\"knn\" with `photons_only`"),
