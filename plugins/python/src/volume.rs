@@ -109,48 +109,61 @@ pub fn write_vdb(
         }
     };
     let options = WriteOptions { compression, half };
-    let view = array.as_array();
-    let shape = view.shape().to_vec();
-    // Python may change the array while it is written: this is a copy.
-    let values: Vec<f32> = view.iter().copied().collect();
+    let class = class_.map(class_named).transpose()?;
     let origin = [origin.0, origin.1, origin.2];
     let pool = thread_pool(None)?;
-    let class = |default: GridClass| class_.map_or(default, GridClass::from_word);
-    match shape[..] {
+    let file = File { path, name, class, index_to_world, options };
+    let view = array.as_array();
+    // Python may change the array while it is written: values are copied, once.
+    match *view.shape() {
         [x, y, z] => {
+            let values = view.iter().copied().collect();
             let dense = DenseBox { origin, size: [x, y, z], values };
-            let written = run(py, &pool, None, |_| {
-                let grid = SparseGrid::from_dense(&dense, background, index_to_world)
-                    .map_err(IntoPyErr::into_py_err)?;
-                put(&path, name, (&grid).into(), class(GridClass::FogVolume), &options)
-            })?;
-            written
+            run(py, &pool, None, |_| file.put(&dense, background, GridClass::FogVolume))?
         }
         [x, y, z, 3] => {
-            let (vectors, _) = values.as_chunks::<3>();
-            let dense = DenseBox { origin, size: [x, y, z], values: vectors.to_vec() };
-            let written = run(py, &pool, None, |_| {
-                let grid = SparseGrid::from_dense(&dense, [background; 3], index_to_world)
-                    .map_err(IntoPyErr::into_py_err)?;
-                put(&path, name, (&grid).into(), class(GridClass::Unknown), &options)
-            })?;
-            written
+            let values = view.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect();
+            let dense = DenseBox { origin, size: [x, y, z], values };
+            run(py, &pool, None, |_| file.put(&dense, [background; 3], GridClass::Unknown))?
         }
-        _ => Err(refused(format!(
+        ref shape => Err(refused(format!(
             "array: of shape {shape:?}, where (nx, ny, nz) or (nx, ny, nz, 3) is wanted"
         ))),
     }
 }
 
-fn put(
-    path: &std::path::Path,
-    name: &str,
-    values: ValuesToWrite<'_>,
-    class: GridClass,
-    options: &WriteOptions,
-) -> PyResult<()> {
-    let grid = GridToWrite { class, ..GridToWrite::new(name, values) };
-    write_grids(path, &[grid], options).map(|_| ()).map_err(IntoPyErr::into_py_err)
+/// What is written, but for its values.
+struct File<'a> {
+    path: PathBuf,
+    name: &'a str,
+    class: Option<GridClass>,
+    index_to_world: DAffine3,
+    options: WriteOptions,
+}
+
+impl File<'_> {
+    fn put<T>(&self, dense: &DenseBox<T>, background: T, class: GridClass) -> PyResult<()>
+    where
+        T: Copy + PartialEq + Send + Sync,
+        for<'a> ValuesToWrite<'a>: From<&'a SparseGrid<T>>,
+    {
+        let grid = SparseGrid::from_dense(dense, background, self.index_to_world)
+            .map_err(IntoPyErr::into_py_err)?;
+        let class = self.class.unwrap_or(class);
+        let grid = GridToWrite { class, ..GridToWrite::new(self.name, &grid) };
+        let written = write_grids(&self.path, &[grid], &self.options);
+        written.map(|_| ()).map_err(IntoPyErr::into_py_err)
+    }
+}
+
+fn class_named(word: &str) -> PyResult<GridClass> {
+    match (GridClass::from_word(word), word) {
+        (GridClass::Unknown, "unknown") => Ok(GridClass::Unknown),
+        (GridClass::Unknown, _) => Err(refused(format!(
+            "class_: {word:?} is none of fog volume, level set, staggered, unknown"
+        ))),
+        (class, _) => Ok(class),
+    }
 }
 
 /// The four rows of a matrix that maps columns (x, y, z, 1).

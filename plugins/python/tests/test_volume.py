@@ -81,6 +81,7 @@ def test_a_written_volume_renders(fog, tmp_path):
         ({"array": np.ones((2, 2, 2)), "index_to_world": np.diag([1, 0, 1, 1.0])}, "transform"),
         ({"array": np.ones((2, 2, 2)), "origin": (2**31 - 1, 0, 0)}, "reach beyond"),
         ({"array": np.ones((2, 2, 2)), "compression": "lzma"}, "compression"),
+        ({"array": np.ones((2, 2, 2)), "class_": "fog"}, "fog volume"),
     ],
 )
 def test_what_cannot_be_written_is_refused(tmp_path, arguments, words):
