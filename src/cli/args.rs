@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExrOptions;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::{CostlyLayers, Gather, RenderOptions};
+use photonvdb::render::{CostlyLayers, RenderOptions};
 use photonvdb::scene::{Overrides, Scene};
 
 use super::bias::args::BiasArguments;
