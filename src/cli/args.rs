@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExrOptions;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::{CostlyLayers, Gather, RenderOptions};
+use photonvdb::render::{CostlyLayers, RenderOptions};
 use photonvdb::scene::{Overrides, Scene};
 
 use super::bias::args::BiasArguments;
@@ -405,18 +405,15 @@ impl RenderArguments {
 
     /// When the render ends.
     pub fn options(&self, scene: &Scene) -> RenderOptions {
-        let limited = self.target_error.is_some() || self.time_budget.is_some();
-        let passes = self.passes.unwrap_or(match scene.render.gather {
-            _ if limited => u32::MAX,
-            // What the filter goes by is how passes differ.
-            Gather::Bounce => 4,
-            _ => 1,
-        });
         let layers = CostlyLayers {
             depths: self.layers.contains(&ExtraLayer::Depth),
             lights: self.layers.contains(&ExtraLayer::Lights),
         };
-        RenderOptions { passes, target_error: self.target_error, seconds: self.time_budget, layers }
+        let Self { passes, target_error, time_budget, .. } = *self;
+        RenderOptions {
+            layers,
+            ..RenderOptions::for_scene(scene, passes, target_error, time_budget)
+        }
     }
 
     /// What the image's file holds.

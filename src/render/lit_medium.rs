@@ -109,20 +109,35 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
 
     /// A reader for one thread.
     pub fn reader(&self) -> Reader<'_, E, Estimator<'_, E>> {
-        let options = EstimateOptions {
-            k: self.k,
-            constant: self.constant,
-            kernel: self.scene.estimate.kernel,
-            max_radius: max_radius(self.scene, self.map.frame()),
-        };
-        let estimator = Estimator::new(&self.scene.medium, self.extinction, &self.map, options);
-        Reader::new(self.scene, self.extinction, estimator)
+        map_reader(self.scene, self.extinction, &self.map, self.k, self.constant)
+    }
+
+    /// The photon map, and what k photons of it count as.
+    pub(super) fn into_map(self) -> (PhotonMap, f64) {
+        (self.map, self.constant)
     }
 
     /// The photon map.
     pub fn map(&self) -> &PhotonMap {
         &self.map
     }
+}
+
+/// A reader of a photon map of the scene, whose estimates are of k photons that count as `constant`.
+pub(super) fn map_reader<'a, E: Extinction>(
+    scene: &'a Scene,
+    extinction: &'a E,
+    map: &'a PhotonMap,
+    k: NonZeroUsize,
+    constant: f64,
+) -> Reader<'a, E, Estimator<'a, E>> {
+    let options = EstimateOptions {
+        k,
+        constant,
+        kernel: scene.estimate.kernel,
+        max_radius: max_radius(scene, map.frame()),
+    };
+    Reader::new(scene, extinction, Estimator::new(&scene.medium, extinction, map, options))
 }
 
 /// The photons of one pass.
@@ -149,7 +164,7 @@ pub(super) fn trace_settings(scene: &Scene) -> TraceSettings {
     }
 }
 
-fn photons_of_estimate(scene: &Scene) -> NonZeroUsize {
+pub(super) fn photons_of_estimate(scene: &Scene) -> NonZeroUsize {
     NonZeroUsize::new(scene.estimate.k).unwrap_or(NonZeroUsize::MIN)
 }
 

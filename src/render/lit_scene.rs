@@ -76,6 +76,17 @@ impl<'a> LitScene<'a> {
         }
     }
 
+    /// The photon map, what k photons of it count as, and how it was made.
+    pub(super) fn into_map(self) -> (PhotonMap, f64, RenderReport) {
+        let (map, constant) = match self.lit {
+            Lit::Uniform(lit) => lit.into_map(),
+            Lit::Chromatic(lit) => lit.into_map(),
+            Lit::Grid(lit) => lit.into_map(),
+            Lit::Several(lit) => lit.into_map(),
+        };
+        (map, constant, self.report)
+    }
+
     /// The photon map.
     pub fn map(&self) -> &PhotonMap {
         match &self.lit {

@@ -14,6 +14,7 @@ mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
 mod observer;
+mod owned_lit_scene;
 mod passes;
 mod photon_query;
 mod pixel_peak;
@@ -32,6 +33,7 @@ pub use error_estimate::ErrorEstimate;
 pub use lit_medium::LitMedium;
 pub use lit_scene::{LightReader, LitScene};
 pub use observer::{Observer, Stage, Unobserved};
+pub use owned_lit_scene::{NotCalibrated, OwnedLitScene};
 pub use passes::photons_per_pass;
 pub use reader::{RayRadiance, Reader};
 pub use render_state::RenderState;
@@ -75,6 +77,24 @@ impl RenderOptions {
     pub fn passes(passes: u32) -> Self {
         let layers = CostlyLayers::default();
         Self { passes: passes.max(1), target_error: None, seconds: None, layers }
+    }
+
+    /// So many passes, or, where their number is left open, as many as a target error or a time \[s\] takes; without either as many
+    /// as the scene's way of gathering wants.
+    pub fn for_scene(
+        scene: &Scene,
+        passes: Option<u32>,
+        target_error: Option<f64>,
+        seconds: Option<f64>,
+    ) -> Self {
+        let is_limited = target_error.is_some() || seconds.is_some();
+        let passes = passes.unwrap_or(match scene.render.gather {
+            _ if is_limited => u32::MAX,
+            // What the filter goes by is how passes differ.
+            Gather::Bounce => 4,
+            _ => 1,
+        });
+        Self { target_error, seconds, ..Self::passes(passes) }
     }
 
     /// Whether something else than the number of passes ends the render: then passes are small.

@@ -50,6 +50,7 @@ use crate::render::Gather;
 use error::Problem;
 use expected_collisions::expected_collisions;
 use media::MediaNotes;
+use tree::Node;
 use volume::VolumeRules;
 
 /// Expected collisions of a photon from which paths are bounced.
@@ -97,8 +98,34 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`]; a replaced value meets the same limits as one of the file.
     pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
-        let (file, tree) = SceneFile::load_tree(path, overrides)?;
         let directory = path.parent().unwrap_or(Path::new(""));
+        Self::of_tree(tree::read(path)?, path, directory, overrides)
+    }
+
+    /// A scene from the JSON text of a scene file. The files it names are relative to `directory`, and messages call it
+    /// [`Scene::IN_MEMORY`].
+    ///
+    /// # Errors
+    /// As [`Scene::load_with`].
+    pub fn from_json_text(
+        text: &str,
+        directory: &Path,
+        overrides: &Overrides,
+    ) -> Result<Self, SceneError> {
+        let name = Path::new(Self::IN_MEMORY);
+        Self::of_tree(tree::read_json(text, name)?, name, directory, overrides)
+    }
+
+    /// What messages call a scene that is no file.
+    pub const IN_MEMORY: &'static str = "the scene";
+
+    fn of_tree(
+        tree: Node,
+        path: &Path,
+        directory: &Path,
+        overrides: &Overrides,
+    ) -> Result<Self, SceneError> {
+        let (file, tree) = SceneFile::of_tree(tree, path, overrides)?;
         let scene = Self::build(&file, directory, &overrides.volume_rules())
             .map_err(|problem| problem.locate(path, &tree))?;
         let mut warnings = scene.warnings;

@@ -19,6 +19,7 @@ mod codec;
 mod contents;
 mod crop;
 mod cursor;
+mod dense;
 mod descriptor;
 mod error;
 mod fault;
@@ -43,6 +44,7 @@ mod write;
 pub use half::f16;
 
 pub use crop::{CropError, crop};
+pub use dense::{DenseBox, DenseError};
 pub use error::VdbError;
 pub(super) use error::memory_size;
 pub use file::VdbFile;

@@ -68,15 +68,15 @@ impl SceneFile {
     /// # Errors
     /// The first thing wrong in the scene file itself; files it names are not looked at.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
-        Self::load_tree(path, overrides).map(|(file, _)| file)
+        Self::of_tree(tree::read(path)?, path, overrides).map(|(file, _)| file)
     }
 
-    /// The file, and the tree it was read from, which knows the lines of later errors.
-    pub(super) fn load_tree(
+    /// The file that says what a tree does, and the tree with what replaces its values: it knows the lines of later errors.
+    pub(super) fn of_tree(
+        mut tree: Node,
         path: &Path,
         overrides: &Overrides,
     ) -> Result<(Self, Node), SceneError> {
-        let mut tree = tree::read(path)?;
         overrides.apply(&mut tree);
         match preset::apply(&mut tree).and_then(|()| Self::read(&tree)) {
             Ok(file) => Ok((file, tree)),

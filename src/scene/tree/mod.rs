@@ -55,10 +55,23 @@ pub(super) fn read(path: &Path) -> Result<Node, SceneError> {
     };
     let text = read_text(path)?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    parse(text).map_err(|error| SceneError::Syntax {
-        file: path.into(),
-        line: error.line,
-        problem: error.problem,
+    parse_as(parse, text, path)
+}
+
+/// Reads a scene from JSON in memory, which messages call `name`.
+pub(super) fn read_json(text: &str, name: &Path) -> Result<Node, SceneError> {
+    parse_as(json::parse, text, name)
+}
+
+fn parse_as(
+    parse: fn(&str) -> Result<Node, SyntaxError>,
+    text: &str,
+    file: &Path,
+) -> Result<Node, SceneError> {
+    parse(text).map_err(|SyntaxError { line, problem }| SceneError::Syntax {
+        file: file.into(),
+        line,
+        problem,
     })
 }
 
