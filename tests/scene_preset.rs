@@ -36,7 +36,8 @@ fn a_preset_is_what_its_file_says() {
 #[test]
 fn what_the_scene_says_comes_first() {
     let file = read(&format!("kind = \"homogeneous\"\n{BOX}\npreset = \"fog\"\nalbedo = 0.5"));
-    let MediumSection::Homogeneous { sigma_t, albedo, phase, .. } = file.unwrap().media.remove(0) else {
+    let MediumSection::Homogeneous { sigma_t, albedo, phase, .. } = file.unwrap().media.remove(0)
+    else {
         panic!("homogeneous");
     };
     assert_eq!(albedo, Rgb::splat(0.5));

@@ -109,9 +109,25 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
 
     /// A reader for one thread.
     pub fn reader(&self) -> Reader<'_, E, Estimator<'_, E>> {
+        self.reader_with(self.k, self.constant)
+    }
+
+    /// A reader of `k` photons that count as the divisor says; `None` where that would have to be measured: it is for the k of the
+    /// scene, if the scene asks for it.
+    pub fn reader_of(
+        &self,
+        k: NonZeroUsize,
+        divisor: Divisor,
+    ) -> Option<Reader<'_, E, Estimator<'_, E>>> {
+        let is_measured = self.scene.estimate.divisor == divisor && self.k == k;
+        let constant = divisor.constant(k).or(is_measured.then_some(self.constant))?;
+        Some(self.reader_with(k, constant))
+    }
+
+    fn reader_with(&self, k: NonZeroUsize, constant: f64) -> Reader<'_, E, Estimator<'_, E>> {
         let options = EstimateOptions {
-            k: self.k,
-            constant: self.constant,
+            k,
+            constant,
             kernel: self.scene.estimate.kernel,
             max_radius: max_radius(self.scene, self.map.frame()),
         };

@@ -1,6 +1,8 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
 
-use crate::estimate::{Estimate, Estimator};
+use std::num::NonZeroUsize;
+
+use crate::estimate::{Divisor, Estimate, Estimator};
 use crate::map::PhotonMap;
 use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
@@ -74,6 +76,21 @@ impl<'a> LitScene<'a> {
             Lit::Grid(lit) => Box::new(lit.reader()),
             Lit::Several(lit) => Box::new(lit.reader()),
         }
+    }
+
+    /// A reader for one thread that takes `k` photons, which count as the divisor says; `None` where that would have to be measured:
+    /// [`Divisor::Calibrated`], unless the scene asks for it with that k.
+    pub fn reader_of(
+        &self,
+        k: NonZeroUsize,
+        divisor: Divisor,
+    ) -> Option<Box<dyn LightReader + '_>> {
+        Some(match &self.lit {
+            Lit::Uniform(lit) => Box::new(lit.reader_of(k, divisor)?),
+            Lit::Chromatic(lit) => Box::new(lit.reader_of(k, divisor)?),
+            Lit::Grid(lit) => Box::new(lit.reader_of(k, divisor)?),
+            Lit::Several(lit) => Box::new(lit.reader_of(k, divisor)?),
+        })
     }
 
     /// The photon map.

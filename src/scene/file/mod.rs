@@ -76,7 +76,23 @@ impl SceneFile {
         path: &Path,
         overrides: &Overrides,
     ) -> Result<(Self, Node), SceneError> {
-        let mut tree = tree::read(path)?;
+        Self::of_tree(tree::read(path)?, path, overrides)
+    }
+
+    /// The same of text, as though it were the file at `path`.
+    pub(super) fn parse_tree(
+        text: &str,
+        path: &Path,
+        overrides: &Overrides,
+    ) -> Result<(Self, Node), SceneError> {
+        Self::of_tree(tree::parse(text, path)?, path, overrides)
+    }
+
+    fn of_tree(
+        mut tree: Node,
+        path: &Path,
+        overrides: &Overrides,
+    ) -> Result<(Self, Node), SceneError> {
         overrides.apply(&mut tree);
         match preset::apply(&mut tree).and_then(|()| Self::read(&tree)) {
             Ok(file) => Ok((file, tree)),

@@ -48,18 +48,30 @@ pub(super) enum Value {
 
 /// Reads a scene file, TOML or JSON by its extension.
 pub(super) fn read(path: &Path) -> Result<Node, SceneError> {
-    let parse = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase) {
-        Some(extension) if extension == "toml" => toml::parse,
-        Some(extension) if extension == "json" => json::parse,
-        _ => return Err(SceneError::Extension { file: path.into() }),
-    };
-    let text = read_text(path)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    parser_of(path)?;
+    parse(&read_text(path)?, path)
+}
+
+/// Reads text as though it were the scene file at `path`.
+pub(super) fn parse(text: &str, path: &Path) -> Result<Node, SceneError> {
+    let parse = parser_of(path)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     parse(text).map_err(|error| SceneError::Syntax {
         file: path.into(),
         line: error.line,
         problem: error.problem,
     })
+}
+
+/// What reads a file of that name.
+fn parser_of(path: &Path) -> Result<fn(&str) -> Result<Node, SyntaxError>, SceneError> {
+    let parse: fn(&str) -> Result<Node, SyntaxError> =
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase) {
+            Some(extension) if extension == "toml" => toml::parse,
+            Some(extension) if extension == "json" => json::parse,
+            _ => return Err(SceneError::Extension { file: path.into() }),
+        };
+    Ok(parse)
 }
 
 /// TOML that is part of the program; `None` if it cannot be read.
