@@ -1,7 +1,7 @@
 //! Light that reaches a place unscattered.
 
 use crate::light::{Environment, Illumination, Light, transmittance_to};
-use crate::math::{DVec2, DVec3, Rgb, Stream, uniform};
+use crate::math::{DVec2, DVec3, Random, Ray, Rgb, Span, Stream, uniform};
 use crate::medium::Extinction;
 use crate::render::bake::voxels::Voxel;
 use crate::scene::Scene;
@@ -36,14 +36,18 @@ impl<E: Extinction> DirectLight<'_, E> {
         match light {
             Light::Point(_) | Light::Spot(_) | Light::Directional(_) => {
                 let place = self.at_distance(light, voxel.middle);
-                self.arriving(place, light.sample_illumination(place, DVec2::ZERO))
+                let arriving = light.sample_illumination(place, DVec2::ZERO);
+                arriving.map_or(Rgb::ZERO, |Illumination { direction, distance, irradiance }| {
+                    let (medium, extinction) = (&self.scene.medium, self.extinction);
+                    irradiance * transmittance_to(medium, extinction, place, direction, distance)
+                })
             }
-            Light::Quad(_) | Light::Sphere(_) => self.mean(number, voxel, |u| {
-                self.arriving(voxel.middle, light.sample_illumination(voxel.middle, u))
-            }),
-            Light::Environment(environment) => self.mean(number, voxel, |u| {
-                self.arriving(voxel.middle, Some(from_environment(environment, u)))
-            }),
+            Light::Quad(_) | Light::Sphere(_) => {
+                self.mean(number, voxel, |u| light.sample_illumination(voxel.middle, u))
+            }
+            Light::Environment(environment) => {
+                self.mean(number, voxel, |u| Some(from_environment(environment, u)))
+            }
         }
     }
 
@@ -58,26 +62,36 @@ impl<E: Extinction> DirectLight<'_, E> {
         position + away.try_normalize().unwrap_or(ahead) * self.near
     }
 
-    /// What is left of light on its way to a place.
-    fn arriving(&self, place: DVec3, light: Option<Illumination>) -> Rgb {
-        light.map_or(Rgb::ZERO, |Illumination { direction, distance, irradiance }| {
-            let medium = &self.scene.medium;
-            irradiance * transmittance_to(medium, self.extinction, place, direction, distance)
-        })
+    /// What is left of light on its way to a place, by an estimate: its direction is random already.
+    fn arriving(&self, place: DVec3, light: Illumination, random: &mut Random) -> Rgb {
+        let Illumination { direction, distance, irradiance } = light;
+        let ray = Ray::new(place, direction);
+        let inside = self.scene.medium.bounds.intersect(&ray);
+        let way = inside.and_then(|span| span.intersect(Span::new(0.0, distance)));
+        irradiance
+            * way.map_or(Rgb::ONE, |way| self.extinction.estimate_transmittance(&ray, way, random))
     }
 
     /// The mean over a lattice of the unit square, shifted by chance from voxel to voxel.
-    fn mean(&self, light: usize, voxel: Voxel, of: impl Fn(DVec2) -> Rgb) -> Rgb {
+    fn mean(
+        &self,
+        light: usize,
+        voxel: Voxel,
+        towards: impl Fn(DVec2) -> Option<Illumination>,
+    ) -> Rgb {
         let seed = Stream::Bake.hash(self.scene.photons.seed, light as u64);
         let mut random = Stream::Bake.random(seed, voxel.number);
         let shift = DVec2::new(uniform(&mut random), uniform(&mut random));
         let count = self.samples as f64;
-        let point = |sample: usize| {
+        let mut sum = Rgb::ZERO;
+        for sample in 0..self.samples {
             let step = sample as f64;
             let across = (shift.y + step * GOLDEN_STEP).fract();
-            of(DVec2::new((step + shift.x) / count, across))
-        };
-        (0..self.samples).map(point).sum::<Rgb>() / count
+            if let Some(light) = towards(DVec2::new((step + shift.x) / count, across)) {
+                sum += self.arriving(voxel.middle, light, &mut random);
+            }
+        }
+        sum / count
     }
 }
 
