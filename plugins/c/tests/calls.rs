@@ -132,10 +132,10 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     assert_eq!(status, pvdb_status::Ok);
     let bad = pvdb_status::BadArgument;
     let mut pixels = [0.0f32; 16];
-    let mut map = null_mut();
+    let mut map: *mut pvdb_map = null_mut();
     // SAFETY: null pointers, which are refused, living handles and arrays of the lengths told.
     unsafe {
-        refused(pvdb_scene_load(null(), &mut map.cast()), bad, "path is a null pointer");
+        refused(pvdb_scene_load(null(), &mut null_mut()), bad, "path is a null pointer");
         refused(pvdb_scene_load(c"x.toml".as_ptr(), null_mut()), bad, "scene is a null pointer");
         let mut missing = null_mut();
         let status = pvdb_scene_load(c"missing.toml".as_ptr(), &mut missing);
