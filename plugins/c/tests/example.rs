@@ -6,7 +6,7 @@ use std::process::Command;
 /// Where cargo has put the library beside the test.
 fn library() -> std::path::PathBuf {
     let test = std::env::current_exe().unwrap();
-    test.parent().and_then(Path::parent).unwrap().join("libphotonvdb_c.a")
+    test.parent().unwrap().join("libphotonvdb_c.a")
 }
 
 #[test]
