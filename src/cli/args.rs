@@ -9,6 +9,7 @@ use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
 use photonvdb::render::{CostlyLayers, RenderOptions};
 use photonvdb::scene::{Overrides, Scene};
 
+use super::bake::args::BakeArguments;
 use super::bias::args::BiasArguments;
 use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
@@ -32,6 +33,8 @@ Examples:
       Sixteen independent passes of ten million photons, averaged.
   photonvdb reference fog.toml -o truth.exr --target-error 0.01
       The same image by path tracing, with its variance.
+  photonvdb bake smoke.toml -o smoke_lit.vdb
+      Its light as grids of an OpenVDB file, for renderers that show emissive volumes.
   photonvdb bias 3d-random 3d-jittered --k 10,50,100
       How far k-nearest estimates are off, exact and measured.
   photonvdb compare analytic:point-absorbing --k 10,50,100
@@ -107,6 +110,8 @@ pub enum Command {
     New(NewArguments),
     /// Render a scene to OpenEXR
     Render(Box<RenderArguments>),
+    /// Write a scene's light to a .vdb: fluence, and in-scattered light as emission, on the tree of its density
+    Bake(Box<BakeArguments>),
     /// Render a scene without photons and without bias, however long it takes: what others are compared with
     Reference(Box<ReferenceArguments>),
     /// Measure the bias of density estimates on models whose truth is known
@@ -428,7 +433,7 @@ impl RenderArguments {
     }
 }
 
-fn parse_passes(text: &str) -> Result<u32, String> {
+pub fn parse_passes(text: &str) -> Result<u32, String> {
     let count = parse_count(text)?;
     u32::try_from(count).map_err(|_| format!("`{text}` passes would never end"))
 }
@@ -445,7 +450,7 @@ pub fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
 }
 
 /// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
-fn parse_vdb_name(text: &str) -> Result<PathBuf, String> {
+pub fn parse_vdb_name(text: &str) -> Result<PathBuf, String> {
     match Path::new(text).extension() {
         Some(extension) if !extension.eq_ignore_ascii_case("vdb") => {
             Err("grids are written as OpenVDB, the file's name must end in .vdb".into())

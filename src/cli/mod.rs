@@ -5,6 +5,7 @@
 //! Exit codes: 0 done, 1 a check asked for did not hold, 2 bad input or usage.
 
 mod args;
+mod bake;
 mod bias;
 mod bytes;
 mod compare;
@@ -45,6 +46,7 @@ pub fn run() -> ExitCode {
     let finished = match Arguments::parse().command {
         Command::New(arguments) => new::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Bake(arguments) => bake::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Bias(arguments) => bias::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

@@ -23,7 +23,7 @@ pub use shape::LatticeShape;
 use glam::Vec3A;
 
 use crate::math::{DVec3, Rgb};
-use crate::medium::Phase;
+use crate::medium::{ISOTROPIC, Phase};
 
 /// Cells, and cells twice as long.
 type Levels<L> = [Cells<L>; 2];
@@ -59,7 +59,13 @@ impl LightLattice {
         self.at_level(0, place, towards, phase)
     }
 
-    /// The same from the cells twice as long.
+    /// Fluence at a place \[W/m^2\], of a lattice whose cells look at all directions alike.
+    #[inline]
+    pub fn fluence(&self, place: DVec3) -> Rgb {
+        self.at_level(0, place, DVec3::Z, Phase::Isotropic) / ISOTROPIC
+    }
+
+    /// [`LightLattice::scattered`] from the cells twice as long.
     pub fn coarse_scattered(&self, place: DVec3, towards: DVec3, phase: Phase) -> Rgb {
         self.at_level(1, place, towards, phase)
     }

@@ -29,6 +29,8 @@ pub enum Stream {
     Calibration = 8,
     /// Camera paths that end in a lattice.
     Bounce = 9,
+    /// Directions towards lights from a voxel.
+    Bake = 10,
 }
 
 impl Stream {

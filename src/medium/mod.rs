@@ -90,6 +90,14 @@ impl Medium {
         })
     }
 
+    /// The medium number `number`, from 0, of those that it was made of.
+    pub fn volume(&self, number: usize) -> Option<&Self> {
+        match &self.extinction {
+            MediumExtinction::Several(volumes) => volumes.given(number),
+            _ => (number == 0).then_some(self),
+        }
+    }
+
     /// The medium with light of its own; an infinite one has none.
     pub fn with_emissivity(self, emissivity: Emissivity) -> Self {
         if matches!(self.bounds, Bounds::Infinite) {

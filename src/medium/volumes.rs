@@ -16,6 +16,8 @@ use crate::math::{Ball, DVec3, Random, Ray, Rgb, Span, uniform};
 #[derive(Debug)]
 pub struct Volumes {
     media: Vec<Medium>,
+    /// The place of each among the media as they were given.
+    numbers: Vec<usize>,
     /// Where all their scattered light goes, if it goes the same ways.
     shared_phase: Option<Phase>,
 }
@@ -68,10 +70,17 @@ impl Volumes {
         }
         let first = media.first().ok_or(VolumesError::None)?.phase;
         let is_shared = media.iter().all(|medium| medium.phase == first);
-        let mut media = media;
+        let mut numbered: Vec<(usize, Medium)> = media.into_iter().enumerate().collect();
         // What is cheap to fly through shortens the way through grids.
-        media.sort_by_key(|medium| matches!(medium.extinction, MediumExtinction::Grid(_)));
-        Ok(Self { media, shared_phase: is_shared.then_some(first) })
+        numbered.sort_by_key(|(_, medium)| matches!(medium.extinction, MediumExtinction::Grid(_)));
+        let (numbers, media) = numbered.into_iter().unzip();
+        Ok(Self { media, numbers, shared_phase: is_shared.then_some(first) })
+    }
+
+    /// The medium that was given as number `number`, from 0.
+    pub fn given(&self, number: usize) -> Option<&Medium> {
+        let place = self.numbers.iter().position(|own| *own == number)?;
+        self.media.get(place)
     }
 
     /// The volumes, uniform ones first.

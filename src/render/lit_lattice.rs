@@ -8,7 +8,7 @@ use glam::Vec3A;
 use crate::lattice::{
     CameraDeposit, CellLight, Cells, Deposit, DirectedDeposit, LatticeShape, LightLattice,
 };
-use crate::medium::Extinction;
+use crate::medium::{Extinction, Phase};
 use crate::render::lit_medium::{scene_emission, trace_settings};
 use crate::render::{Observer, RenderError, RenderReport, Stage};
 use crate::scene::Scene;
@@ -50,6 +50,8 @@ pub enum ReadFrom {
     Camera,
     /// Places all over the medium, in any direction.
     Anywhere,
+    /// Places all over the medium, for light from all directions alike: [`LightLattice::fluence`].
+    Fluence,
 }
 
 /// Traces the photons of one pass into a lattice. Adds to `report`.
@@ -70,9 +72,10 @@ pub fn trace<E: Extinction>(
     let is_grey = scene.is_grey() && !E::IS_CHROMATIC;
     // What scatters all ways alike is the same from anywhere.
     let is_directed = from == ReadFrom::Anywhere && !scene.medium.phase.is_isotropic();
+    let phase = if from == ReadFrom::Fluence { Phase::Isotropic } else { scene.medium.phase };
     Ok(match (is_grey, is_directed) {
-        (true, false) => LightLattice::Grey(fill.towards_camera::<f32>()),
-        (false, false) => LightLattice::Colored(fill.towards_camera::<Vec3A>()),
+        (true, false) => LightLattice::Grey(fill.towards_camera::<f32>(phase)),
+        (false, false) => LightLattice::Colored(fill.towards_camera::<Vec3A>(phase)),
         (true, true) => LightLattice::DirectedGrey(
             fill.levels(|| DirectedDeposit::<E, f32>::new(&shape, extinction)),
         ),
@@ -93,8 +96,8 @@ struct Fill<'a, E> {
 }
 
 impl<E: Extinction> Fill<'_, E> {
-    fn towards_camera<L: CellLight>(&mut self) -> [Cells<L>; 2] {
-        let (shape, extinction, phase) = (self.shape, self.extinction, self.scene.medium.phase);
+    fn towards_camera<L: CellLight>(&mut self, phase: Phase) -> [Cells<L>; 2] {
+        let (shape, extinction) = (self.shape, self.extinction);
         let camera = self.scene.camera.position();
         self.levels(|| CameraDeposit::<E, L>::new(shape, extinction, phase, camera))
     }

@@ -3,6 +3,7 @@
 //! [`LitMedium`] is a medium with its photon map, ready to be read along any ray: the film is made of such
 //! readings. A host renderer builds a [`LitScene`] and asks for its own.
 
+mod bake;
 mod calibration;
 mod checkpoint;
 mod distances;
@@ -27,6 +28,7 @@ mod report;
 mod scattered_light;
 mod single_scatter;
 
+pub use bake::{BakeOptions, BakeReport, Baked, bake, even_densities};
 pub use calibration::Calibration;
 pub use checkpoint::CheckpointError;
 pub use error_estimate::ErrorEstimate;
@@ -130,6 +132,22 @@ pub enum RenderError {
         emitted: u64,
         /// Most that are stored.
         limit: usize,
+    },
+    /// More voxels than memory allows.
+    #[error(
+        "the light of {voxels} voxels needs more than {limit_mib} MiB; allow more with --max-volume-memory, or take fewer --voxels"
+    )]
+    TooManyVoxels {
+        /// Voxels of all leaves.
+        voxels: u64,
+        /// Memory allowed \[MiB\].
+        limit_mib: u64,
+    },
+    /// There is no such medium.
+    #[error("there is no medium {number}; the media of a scene are numbered from 0")]
+    NoSuchMedium {
+        /// The one asked for.
+        number: usize,
     },
     /// The photon map could not be built.
     #[error(transparent)]

@@ -10,7 +10,7 @@ pub enum Stage {
     Trace,
     /// The photon map is built; steps are photons.
     Build,
-    /// The camera's rays read the photon map; steps are pixels.
+    /// The camera's rays read the photon map, and steps are pixels; or voxels do that are to bear their light.
     Gather,
 }
 

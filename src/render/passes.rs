@@ -472,7 +472,7 @@ fn gather<'a, E: Extinction + 'a, S: ScatteredLight>(
 }
 
 /// The seed of a pass: the scene's own for the first, so that one pass is the render without passes.
-fn pass_seed(seed: u64, pass: u32) -> u64 {
+pub(super) fn pass_seed(seed: u64, pass: u32) -> u64 {
     if pass == 0 { seed } else { Stream::Scramble.hash(seed, u64::from(pass)) }
 }
 

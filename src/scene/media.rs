@@ -15,7 +15,7 @@ use super::hash::FileHashes;
 use super::loaded_grids::LoadedGrids;
 use super::volume::{self, DensityVolume, VolumeRules};
 use crate::math::Rgb;
-use crate::medium::vdb::{Limits, VdbFile};
+use crate::medium::vdb::{Limits, SparseGrid, VdbFile};
 use crate::medium::{ChromaticExtinction, Medium, MediumExtinction, UniformExtinction};
 
 /// What reading the media of a scene leads to, besides them.
@@ -101,6 +101,33 @@ fn homogeneous_extinction(sigma_t: Rgb) -> MediumExtinction {
     } else {
         MediumExtinction::Chromatic(ChromaticExtinction { sigma_t })
     }
+}
+
+/// The densities of a section's grid as they are rendered, in the scene's world; `None` of a homogeneous medium.
+pub(super) fn read_tree(
+    section: &MediumSection,
+    key: String,
+    directory: &Path,
+    rules: &VolumeRules,
+) -> Result<Option<SparseGrid<f32>>, Problem> {
+    let MediumSection::Vdb {
+        file, density, density_scale, sdf_to_fog, precision, transform, ..
+    } = section
+    else {
+        return Ok(None);
+    };
+    let source = &volume::open(&directory.join(file), &key, rules)?;
+    let density = DensityVolume {
+        grid: density.as_deref(),
+        sdf_to_fog: *sdf_to_fog,
+        precision: *precision,
+        density_scale: *density_scale,
+    };
+    // What is mended was told when the scene was loaded.
+    let MediaNotes { warnings, grids, .. } = &mut MediaNotes::default();
+    let (transform, loaded) = (transform.affine(), &mut LoadedGrids::default());
+    let mut reader = GridReader { source, key, transform, rules, warnings, grids, loaded };
+    density.read_tree(&mut reader).map(Some)
 }
 
 /// The volume at key path `key`.

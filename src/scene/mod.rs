@@ -46,6 +46,7 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::math::Rgb;
 use crate::medium::Medium;
+use crate::medium::vdb::SparseGrid;
 use crate::render::Gather;
 use error::Problem;
 use expected_collisions::expected_collisions;
@@ -118,6 +119,43 @@ impl Scene {
 
     /// What messages call a scene that is no file.
     pub const IN_MEMORY: &'static str = "the scene";
+
+    /// Loads a scene from text, as though it were the content of the file at `path`, which need not exist: its extension tells TOML
+    /// from JSON, files that the scene names are relative to its directory, and messages call the scene so.
+    ///
+    /// # Errors
+    /// As [`Scene::load_with`].
+    pub fn from_text(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
+        let directory = path.parent().unwrap_or(Path::new(""));
+        Self::of_tree(tree::parse(text, path)?, path, directory, overrides)
+    }
+
+    /// Loads the densities alone of medium number `number`, from 0: as they are rendered, in the tree of their file, with the
+    /// transform to the scene's world. `None` of a homogeneous medium.
+    ///
+    /// # Errors
+    /// As [`Scene::load_with`], and where there is no such medium.
+    pub fn load_densities(
+        path: &Path,
+        overrides: &Overrides,
+        number: usize,
+    ) -> Result<Option<SparseGrid<f32>>, SceneError> {
+        let (file, tree) = SceneFile::of_tree(tree::read(path)?, path, overrides)?;
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let is_only = file.media.len() == 1;
+        let key = if is_only { "medium".into() } else { format!("medium[{number}]") };
+        let read = match file.media.get(number) {
+            Some(section) => media::read_tree(section, key, directory, &overrides.volume_rules()),
+            None => {
+                let text = format!(
+                    "there is no medium {number}; the scene has {}, from 0",
+                    file.media.len()
+                );
+                Err(Problem::new("medium", text))
+            }
+        };
+        read.map_err(|problem| problem.locate(path, &tree))
+    }
 
     fn of_tree(
         tree: Node,

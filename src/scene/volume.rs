@@ -55,15 +55,8 @@ impl DensityVolume<'_> {
         if let Some((LoadedGrid::Density(grid), index_to_file)) = reader.find_loaded(key) {
             return self.place(grid, index_to_file, reader);
         }
-        let summary = &source.grids()[index];
-        let unique_name = summary.unique_name.as_str();
-        let name = reader.shown(unique_name);
-        let limits = &reader.rules.limits;
-        let stored = source
-            .load_scalar(index, limits)
-            .map_err(|error| reader.problem(GridRole::Density, error.to_string()))?;
-        let mut sparse = self.density(stored, summary, &name, reader.warnings);
-        reader.mend(&mut sparse, GridRole::Density, unique_name)?;
+        let name = reader.shown(&source.grids()[index].unique_name);
+        let sparse = self.load(index, reader)?;
         if let Some(damage) = source.damage() {
             let name = source.name();
             reader.warnings.push(format!("{name} is damaged beyond its readable grids: {damage}"));
@@ -84,6 +77,28 @@ impl DensityVolume<'_> {
         let loaded = LoadedGrid::Density(Arc::clone(&grid));
         reader.note(GridRole::Density, bytes, key, loaded, index_to_file);
         self.place(grid, index_to_file, reader)
+    }
+
+    /// The densities as they are rendered, in the tree of the file and in the scene's world.
+    pub(super) fn read_tree(&self, reader: &mut GridReader) -> Result<SparseGrid<f32>, Problem> {
+        let index = self.find(reader)?;
+        let mut sparse = self.load(index, reader)?;
+        sparse.index_to_world = reader.transform * sparse.index_to_world;
+        Ok(sparse)
+    }
+
+    /// The densities of a grid of the file: what it holds, or the fog inside it, mended.
+    fn load(&self, index: usize, reader: &mut GridReader) -> Result<SparseGrid<f32>, Problem> {
+        let summary = &reader.source.grids()[index];
+        let unique_name = summary.unique_name.as_str();
+        let stored = reader
+            .source
+            .load_scalar(index, &reader.rules.limits)
+            .map_err(|error| reader.problem(GridRole::Density, error.to_string()))?;
+        let name = reader.shown(unique_name);
+        let mut sparse = self.density(stored, summary, &name, reader.warnings);
+        reader.mend(&mut sparse, GridRole::Density, unique_name)?;
+        Ok(sparse)
     }
 
     /// The grid in the world. At scale 0 all that is left of it is its bounds.

@@ -48,14 +48,13 @@ pub(super) enum Value {
 
 /// Reads a scene file, TOML or JSON by its extension.
 pub(super) fn read(path: &Path) -> Result<Node, SceneError> {
-    let parse = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase) {
-        Some(extension) if extension == "toml" => toml::parse,
-        Some(extension) if extension == "json" => json::parse,
-        _ => return Err(SceneError::Extension { file: path.into() }),
-    };
-    let text = read_text(path)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    parse_as(parse, text, path)
+    let parse = parser_of(path)?;
+    parse_as(parse, &read_text(path)?, path)
+}
+
+/// Reads text as though it were the scene file at `path`.
+pub(super) fn parse(text: &str, path: &Path) -> Result<Node, SceneError> {
+    parse_as(parser_of(path)?, text, path)
 }
 
 /// Reads a scene from JSON in memory, which messages call `name`.
@@ -63,16 +62,27 @@ pub(super) fn read_json(text: &str, name: &Path) -> Result<Node, SceneError> {
     parse_as(json::parse, text, name)
 }
 
-fn parse_as(
-    parse: fn(&str) -> Result<Node, SyntaxError>,
-    text: &str,
-    file: &Path,
-) -> Result<Node, SceneError> {
+fn parse_as(parse: Parser, text: &str, file: &Path) -> Result<Node, SceneError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     parse(text).map_err(|SyntaxError { line, problem }| SceneError::Syntax {
         file: file.into(),
         line,
         problem,
     })
+}
+
+/// Text → values with their lines.
+type Parser = fn(&str) -> Result<Node, SyntaxError>;
+
+/// What reads a file of that name.
+fn parser_of(path: &Path) -> Result<Parser, SceneError> {
+    let parse: Parser = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase)
+    {
+        Some(extension) if extension == "toml" => toml::parse,
+        Some(extension) if extension == "json" => json::parse,
+        _ => return Err(SceneError::Extension { file: path.into() }),
+    };
+    Ok(parse)
 }
 
 /// TOML that is part of the program; `None` if it cannot be read.
