@@ -36,7 +36,7 @@ const PHOTONS_A_PASS: [u64; 2] = [1 << 12, 1 << 20];
 /// Points a ray of such a pass, of single and of multiple scattering each: the next pass looks between them.
 const POINTS_A_RAY: usize = 4;
 
-/// Paths a ray of such a pass, which cost many times what a point does.
+/// Paths a ray, of such a pass and of any other, which cost many times what a point does.
 const PATHS_A_RAY: usize = 2;
 
 /// What the estimated bias is off by, as a share of the estimated noise.
@@ -141,6 +141,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             most_samples: match (is_limited, scene.render.gather) {
                 (true, Gather::Bounce) => [POINTS_A_RAY, PATHS_A_RAY],
                 (true, _) => [POINTS_A_RAY; 2],
+                (false, Gather::Bounce) => [usize::MAX, PATHS_A_RAY],
                 (false, _) => [usize::MAX; 2],
             },
             groups,

@@ -213,7 +213,7 @@ mod tests {
     }
 
     fn bounds(dense: &DenseBox<f32>) -> IndexBox {
-        let max = std::array::from_fn(|axis| dense.origin[axis] + dense.size[axis] as i32 - 1);
+        let max = std::array::from_fn(|axis| dense.origin[axis] + (dense.size[axis] as i32 - 1));
         IndexBox { min: dense.origin, max }
     }
 

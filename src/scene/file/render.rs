@@ -11,7 +11,7 @@ use crate::scene::error::Problem;
 /// | key | type | unit | default | range | meaning |
 /// |---|---|---|---|---|---|
 /// | `samples_per_pixel` | integer | | 4 | 1 to 65536 | rays a pixel, jittered in a grid of that many cells |
-/// | `march_samples` | integer | | 8 | 1 to 65536 | photon-map queries a ray |
+/// | `march_samples` | integer | | 8 | 1 to 65536 | queries a ray for light scattered twice or more; at most 2 where paths are bounced |
 /// | `light_samples` | integer | | 8 | 1 to 65536 | single-scattering points a ray and light |
 /// | `gather` | `"auto"`, `"knn"`, `"lattice"`, `"bounce"` | | `"auto"` | | how light scattered twice or more is gathered from photons; `"auto"` is `"bounce"` in media where light scatters many times, else `"lattice"`; left out, `"knn"` with `photons_only` or any key of `[estimate]`, else `"auto"` |
 /// | `lattice` | integer | | by the number of photons | 2 to 512 | cells of the lattice along its longest side |

@@ -377,7 +377,7 @@ const RENDER: Section = Section {
     repeats: Repeats::Never,
     variants: &[only(&[
         key("samples_per_pixel", Kind::Integer(1, 65536), "rays a pixel, jittered in a grid of that many cells").or("4"),
-        key("march_samples", Kind::Integer(1, 65536), "photon-map queries a ray").or("8"),
+        key("march_samples", Kind::Integer(1, 65536), "queries a ray for light scattered twice or more; at most 2 where paths are bounced").or("8"),
         key("light_samples", Kind::Integer(1, 65536), "single-scattering points a ray and light").or("8"),
         key(
             "gather",
