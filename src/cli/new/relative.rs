@@ -34,10 +34,10 @@ mod tests {
     #[test]
     fn files_are_named_from_the_scene() {
         for (from, to, path) in [
-            ("/work/scenes", "/work/scenes/a.vdb", "a.vdb"),
-            ("/work/scenes", "/work/media/a.vdb", "../media/a.vdb"),
-            ("/work/scenes/deep", "/work/a b/c.vdb", "../../a b/c.vdb"),
-            ("/work", "/home/a.vdb", "/home/a.vdb"),
+            ("/films/scenes", "/films/scenes/a.vdb", "a.vdb"),
+            ("/films/scenes", "/films/media/a.vdb", "../media/a.vdb"),
+            ("/films/scenes/deep", "/films/a b/c.vdb", "../../a b/c.vdb"),
+            ("/films", "/home/a.vdb", "/home/a.vdb"),
         ] {
             assert_eq!(between(Path::new(from), Path::new(to)), Path::new(path));
         }
