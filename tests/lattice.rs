@@ -86,7 +86,7 @@ fn assert_agrees(name: &str, text: &str, gather: &str, allowed: f64) {
                 seed: Some(seed),
                 gather: Some(gather.into()),
                 bounces: (gather == "bounce").then_some(2),
-                samples_per_pixel: (gather == "bounce").then_some(16),
+                samples_per_pixel: (gather == "bounce").then_some(64),
                 ..Overrides::default()
             };
             let scene = scene(name, text, &overrides);
