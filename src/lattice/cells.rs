@@ -9,7 +9,7 @@ use crate::math::DVec3;
 #[derive(Debug)]
 pub struct Cells<L> {
     pub(super) shape: LatticeShape,
-    /// \[W/(m^2 sr)\] times the share of the cell that the medium fills.
+    /// \[W/(m^2 sr)\] times the share of the cell that the medium fills, times the weight of lamps.
     light: Vec<L>,
     /// That share, where it is not 1 everywhere.
     shares: Vec<f32>,
@@ -93,9 +93,19 @@ impl<L: CellSum> Cells<L> {
         Self { shape, light, shares }
     }
 
-    /// Light at a place: trilinear between the middles of cells, and linear beyond the outermost, if the medium fills them.
+    /// Light at a place.
     #[inline]
     pub fn at(&self, position: DVec3) -> L {
+        let held = self.held_at(position);
+        match self.shape.lamps() {
+            None => held,
+            Some(lamps) => held * (1.0 / lamps.weight(position)) as f32,
+        }
+    }
+
+    /// What cells hold of it: trilinear between their middles, and linear beyond the outermost, if the medium fills them.
+    #[inline]
+    fn held_at(&self, position: DVec3) -> L {
         let counts = self.shape.counts();
         let place = self.shape.point(position).as_vec3() - 0.5;
         let (mut low, mut weight) = ([0usize; 3], [0.0f32; 3]);

@@ -1,4 +1,4 @@
-//! Photons' flights into a lattice: weighted for one camera, or with their direction for any.
+//! Photons' flights into a lattice: weighted for one camera, or with their direction for any; near lamps by their distance.
 
 use crate::lattice::walk::walk_cells;
 use crate::lattice::{CellLight, CellSum, DirectedLight, LatticeShape};
@@ -50,7 +50,7 @@ impl<E: Extinction, L: CellLight> Keep for CameraDeposit<'_, E, L> {
         if phase.is_isotropic() && !E::IS_CHROMATIC {
             let light = L::from_rgb(power * phase.density(1.0));
             walk_cells(shape, ray, flight, |cell, enters, leaves| {
-                sums[cell] += light * (leaves - enters) as f32;
+                sums[cell] += light * weighted_length(shape, ray, enters, leaves) as f32;
             });
             return;
         }
@@ -63,7 +63,8 @@ impl<E: Extinction, L: CellLight> Keep for CameraDeposit<'_, E, L> {
             let middle = 0.5 * (enters + leaves);
             let along = nearest - middle;
             let distance = (along * along + across).sqrt().max(f64::MIN_POSITIVE);
-            let weight = phase.density(along / distance) * (leaves - enters);
+            let length = weighted_length(shape, ray, enters, leaves);
+            let weight = phase.density(along / distance) * length;
             sums[cell] += if E::IS_CHROMATIC {
                 let colour = extinction.flying_weight(middle - flight.start, power);
                 L::from_rgb(power * colour * weight)
@@ -74,6 +75,13 @@ impl<E: Extinction, L: CellLight> Keep for CameraDeposit<'_, E, L> {
     }
 
     fn collision(&mut self, _: &Ray, _: Rgb, _: u32) {}
+}
+
+/// The length of a piece of a flight in one cell, times the weight of lamps.
+#[inline]
+fn weighted_length(shape: &LatticeShape, ray: &Ray, enters: f64, leaves: f64) -> f64 {
+    let length = leaves - enters;
+    shape.lamps().map_or(length, |lamps| length * lamps.mean_weight(ray, enters, leaves))
 }
 
 /// Takes flights for any direction: adds power times length, and its direction, to the cells crossed.
@@ -107,7 +115,7 @@ impl<E: Extinction, L: CellLight> Keep for DirectedDeposit<'_, E, L> {
         let Self { shape, extinction, sums } = self;
         let light = DirectedLight::along(ray.direction, L::from_rgb(power));
         walk_cells(shape, ray, flight, |cell, enters, leaves| {
-            let length = (leaves - enters) as f32;
+            let length = weighted_length(shape, ray, enters, leaves) as f32;
             sums[cell] += if E::IS_CHROMATIC {
                 let middle = 0.5 * (enters + leaves);
                 let colour = extinction.flying_weight(middle - flight.start, power);

@@ -11,12 +11,14 @@
 
 mod cells;
 mod deposit;
+mod lamps;
 mod light;
 mod shape;
 mod walk;
 
 pub use cells::Cells;
 pub use deposit::{CameraDeposit, Deposit, DirectedDeposit};
+pub use lamps::Lamps;
 pub use light::{CellLight, CellSum, DirectedLight};
 pub use shape::LatticeShape;
 

@@ -1,5 +1,6 @@
 //! Where the cells of a lattice lie.
 
+use crate::lattice::Lamps;
 use crate::math::{DAffine3, DMat3, DVec3};
 use crate::medium::{Bounds, Parallelepiped};
 
@@ -13,6 +14,8 @@ pub struct LatticeShape {
     cell_edge: f64,
     /// The ball that the medium fills, in cells, if it does not fill the lattice.
     ball: Option<(DVec3, f64)>,
+    /// Lamps whose peaks the cells do not hold.
+    lamps: Option<Lamps>,
 }
 
 /// Edges that subdivide a cell to find how much of it a ball fills.
@@ -44,7 +47,19 @@ impl LatticeShape {
         });
         let cell_volume = cell.determinant().abs();
         let cell_edge = longest / resolution as f64;
-        Some(Self { to_cells, counts, cell_volume, cell_edge, ball })
+        Some(Self { to_cells, counts, cell_volume, cell_edge, ball, lamps: None })
+    }
+
+    /// The same, its cells freed from the peaks of these lamps.
+    pub fn with_lamps(mut self, lamps: Option<Lamps>) -> Self {
+        self.lamps = lamps;
+        self
+    }
+
+    /// Lamps by whose weight what the cells hold is multiplied.
+    #[inline]
+    pub fn lamps(&self) -> Option<&Lamps> {
+        self.lamps.as_ref()
     }
 
     /// The lattice with cells twice as long, half as many.
@@ -55,6 +70,7 @@ impl LatticeShape {
             cell_volume: 8.0 * self.cell_volume,
             cell_edge: 2.0 * self.cell_edge,
             ball: self.ball.map(|(center, radius)| (0.5 * center, 0.5 * radius)),
+            lamps: self.lamps.clone(),
         }
     }
 

@@ -8,6 +8,20 @@
 use crate::math::{DVec3, Ray, Rgb, Span, exp};
 use crate::medium::RayProfile;
 
+/// The quantile at which one of `count` strata is looked at: at `phase` of each. Best where light ends as it begins, as that of a cone that the ray crosses.
+/// Uniform in the stratum if the phase is in \[0, 1).
+#[inline]
+pub fn even_quantile(stratum: usize, phase: f64, count: usize) -> f64 {
+    (stratum as f64 + phase) / count as f64
+}
+
+/// The same at `phase` of every other stratum and at 1 - phase of those between, so that what two strata miss of a slope cancels. Below 1.
+#[inline]
+pub fn mirrored_quantile(stratum: usize, phase: f64, count: usize) -> f64 {
+    let within = if stratum % 2 == 0 { phase } else { 1.0 - phase };
+    ((stratum as f64 + within) / count as f64).min(1.0 - f64::EPSILON)
+}
+
 /// Sampling by transmittance over a part of a ray.
 pub struct ByTransmittance<'a> {
     profile: &'a RayProfile,
@@ -142,6 +156,21 @@ impl EquiAngular {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// One place a stratum, the slopes of two cancel, and no phase reaches 1.
+    #[test]
+    fn quantiles_mirror_every_other_stratum() {
+        for (phase, found) in
+            [(0.25, [0.0625, 0.4375, 0.5625, 0.9375]), (0.0, [0.0, 0.5, 0.5, 1.0])]
+        {
+            let places: [f64; 4] =
+                std::array::from_fn(|stratum| mirrored_quantile(stratum, phase, 4));
+            let same = places.iter().zip(found).all(|(a, b)| (a - b).abs() < 1e-15);
+            assert!(same && places.iter().all(|u| *u < 1.0), "{places:?}");
+            assert!((places.iter().sum::<f64>() - 2.0).abs() < 1e-15);
+        }
+        assert!(mirrored_quantile(127, 1e-17, 128) < 1.0);
+    }
 
     /// The pdf is the derivative of the quantile, and spans the span, for near, far and grazing lights.
     #[test]

@@ -27,8 +27,8 @@ const SLOPE_RAYS: usize = 16;
 /// 1 / x and 1 / x^2 with x^3 = x + 1: their multiples modulo 1 are even in the plane.
 const PLANE_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
-/// How near that is \[pixels\]: beyond, a pixel's own rays see less than 10 % of variation.
-const SLOPE_REACH: f64 = 8.0;
+/// How near that is \[pixels\]: a sixteenth of the image, but no less and no more than this. At 8 pixels a pixel's own rays see 10 % of variation.
+const SLOPE_REACH: [f64; 2] = [8.0, 32.0];
 
 /// What a pass over the film looks for.
 pub struct FilmPass<'a> {
@@ -155,6 +155,8 @@ fn peaks(scene: &Scene, choice: LightChoice) -> Vec<(usize, DVec2)> {
 struct TilePass<'p, 'a, E, S> {
     pass: &'p FilmPass<'a>,
     peaks: &'p [(usize, DVec2)],
+    /// [`SLOPE_REACH`] of this image.
+    slope_reach: f64,
     reader: Reader<'a, E, S>,
     pixels: Vec<RenderedPixel>,
     queries: Vec<PhotonQuery>,
@@ -166,7 +168,10 @@ const QUERY_BATCH: usize = 16384;
 impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
     fn new(pass: &'p FilmPass<'a>, peaks: &'p [(usize, DVec2)], reader: Reader<'a, E, S>) -> Self {
         let reader = reader.with_choice(pass.choice).with_depths(pass.finds_depths);
-        Self { pass, peaks, reader, pixels: Vec::new(), queries: Vec::new() }
+        let pixels = pass.scene.camera.width * pass.scene.camera.height;
+        let [least, most] = SLOPE_REACH;
+        let slope_reach = ((pixels as f64).sqrt() / 16.0).clamp(least, most);
+        Self { pass, peaks, slope_reach, reader, pixels: Vec::new(), queries: Vec::new() }
     }
 
     /// Traces the rays of the next pixel.
@@ -179,7 +184,7 @@ impl<'p, 'a, E: Extinction, S: ScatteredLight> TilePass<'p, 'a, E, S> {
 
         let corner = DVec2::new(x as f64, y as f64);
         let middle = corner + DVec2::splat(0.5);
-        let near = |place: DVec2| (place - middle).abs().max_element() <= SLOPE_REACH;
+        let near = |place: DVec2| (place - middle).abs().max_element() <= self.slope_reach;
         let peaks: Vec<(usize, DVec2)> =
             self.peaks.iter().copied().filter(|(_, place)| near(*place)).collect();
         let skipped: Vec<usize> = peaks.iter().map(|(light, _)| *light).collect();

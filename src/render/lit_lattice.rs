@@ -6,8 +6,9 @@ use crate::emission::{Emission, EmissionSettings};
 use glam::Vec3A;
 
 use crate::lattice::{
-    CameraDeposit, CellLight, Cells, Deposit, DirectedDeposit, LatticeShape, LightLattice,
+    CameraDeposit, CellLight, Cells, Deposit, DirectedDeposit, Lamps, LatticeShape, LightLattice,
 };
+use crate::light::LightChoice;
 use crate::medium::{Extinction, Phase};
 use crate::render::lit_medium::{scene_emission, trace_settings};
 use crate::render::{Observer, RenderError, RenderReport, Stage};
@@ -54,7 +55,7 @@ pub enum ReadFrom {
     Fluence,
 }
 
-/// Traces the photons of one pass into a lattice. Adds to `report`.
+/// Traces the photons of one pass, of the chosen lights, into a lattice. Adds to `report`.
 ///
 /// # Errors
 /// An infinite medium.
@@ -62,12 +63,14 @@ pub fn trace<E: Extinction>(
     scene: &Scene,
     extinction: &E,
     emission: &Emission,
-    (resolution, from): (usize, ReadFrom),
+    (resolution, from, choice): (usize, ReadFrom, LightChoice),
     observer: &dyn Observer,
     report: &mut RenderReport,
 ) -> Result<LightLattice, RenderError> {
     let bounds = &scene.medium.bounds;
     let shape = LatticeShape::new(bounds, resolution).ok_or(RenderError::InfiniteMedium)?;
+    let lamps = Lamps::of(&scene.lights, choice, bounds, shape.cell_edge());
+    let shape = shape.with_lamps(lamps);
     let mut fill = Fill { scene, extinction, emission, shape: &shape, observer, report };
     let is_grey = scene.is_grey() && !E::IS_CHROMATIC;
     // What scatters all ways alike is the same from anywhere.

@@ -27,6 +27,9 @@ const PHOTONS_A_PIXEL: f64 = 2.0;
 /// The same where paths end in what the photons leave, which says little of the noise.
 const PHOTONS_A_PIXEL_OF_PATHS: f64 = 0.25;
 
+/// Photons a pixel that cost little beside its ray.
+const CHEAP_PHOTONS_A_PIXEL: f64 = 0.2;
+
 /// Photons of a pass that cost nothing beside its rays.
 const MIN_USEFUL_PHOTONS: f64 = 16384.0;
 
@@ -330,7 +333,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                     scene,
                     *extinction,
                     emission,
-                    (grown.max(resolution), from),
+                    (grown.max(resolution), from, choice),
                     *observer,
                     report,
                 )?;
@@ -434,7 +437,8 @@ pub fn photons_per_pass(scene: &Scene, options: &RenderOptions) -> u64 {
             _ => {
                 let needed = options.target_error.map(|error| expected_photons(Some(error)));
                 let most = needed.map_or(f64::INFINITY, |photons| (photons / FEWEST_PASSES) as f64);
-                (PHOTONS_A_PIXEL * pixels).min(most.max(MIN_USEFUL_PHOTONS))
+                let cheap = MIN_USEFUL_PHOTONS.max(CHEAP_PHOTONS_A_PIXEL * pixels);
+                (PHOTONS_A_PIXEL * pixels).min(most.max(cheap))
             }
         };
         return (photons as u64).clamp(fewest, most);

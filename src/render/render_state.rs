@@ -3,12 +3,10 @@
 use crate::film::Film;
 use crate::render::RenderReport;
 use crate::render::error_estimate::ErrorProbes;
+use crate::render::regression::first_radius;
 
 /// Passes at which the error is measured first: each half has one.
 const FIRST_MEASURE: u32 = 2;
-
-/// Radius of the filter that is tried first \[pixels\].
-const FIRST_RADIUS: usize = 2;
 
 /// A render between two passes. Read from a file it continues where it was written ([`RenderState::load`]).
 #[derive(Clone, Debug)]
@@ -19,7 +17,7 @@ pub struct RenderState {
     pub(super) resolution: usize,
     /// Passes at which the error is measured next.
     pub(super) next_measure: u32,
-    /// Radius of the filter that was best when the error was measured last \[pixels\].
+    /// Radius of the filter that was best when the error was measured last, or is tried first \[pixels\].
     pub(super) filter_radius: usize,
     /// Wall-clock time spent on it \[s\].
     pub(super) seconds: f64,
@@ -36,7 +34,7 @@ impl RenderState {
             begun: 0,
             resolution,
             next_measure: FIRST_MEASURE,
-            filter_radius: FIRST_RADIUS,
+            filter_radius: first_radius(film.width, film.height),
             seconds: 0.0,
             probes: ErrorProbes::new(film.width, film.height),
             film,

@@ -8,7 +8,7 @@
 use crate::light::{Environment, Illumination, Light, Shadows, transmittance_to};
 use crate::math::{DVec2, DVec3, Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, Medium, RayProfile, Scattering};
-use crate::render::distances::{ByTransmittance, EquiAngular};
+use crate::render::distances::{ByTransmittance, EquiAngular, even_quantile, mirrored_quantile};
 
 /// Opacity up to which a uniform medium's transmittance counts as smooth: an optical depth of 4.
 const SMOOTH_OPACITY: f64 = 0.98;
@@ -77,7 +77,7 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let count = samples as f64;
         let mut sum = Rgb::ZERO;
         for stratum in 0..samples {
-            let u = (stratum as f64 + phase) / count;
+            let u = mirrored_quantile(stratum, phase, samples);
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = self.ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
@@ -102,13 +102,17 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let even = E::IS_UNIFORM && by_transmittance.opacity() <= SMOOTH_OPACITY;
         let far = if even { 0 } else { samples / 2 };
         let near_light = samples - far;
+        let quantile = match light.1 {
+            Light::Spot(_) => even_quantile,
+            _ => mirrored_quantile,
+        };
         let mut sum = Rgb::ZERO;
         for sample in 0..samples {
             let distance = if sample < near_light {
-                let u = (sample as f64 + phase) / near_light as f64;
+                let u = quantile(sample, phase, near_light);
                 equi_angular.sample_distance(u)
             } else {
-                let u = ((sample - near_light) as f64 + phase) / far as f64;
+                let u = quantile(sample - near_light, phase, far);
                 by_transmittance.sample_distance(u, uniform(random))
             };
             let place = self.ray.at(distance);

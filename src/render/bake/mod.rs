@@ -22,6 +22,7 @@ use direct::DirectLight;
 use rayon::prelude::*;
 use voxels::{Voxel, Voxels};
 
+use crate::light::LightChoice;
 use crate::math::Rgb;
 use crate::medium::vdb::{Limits, SparseGrid};
 use crate::medium::{Bounds, Extinction, ISOTROPIC, Medium, MediumExtinction};
@@ -144,7 +145,7 @@ impl Baking<'_> {
         let mut sums = self.voxels.zeros();
         while !self.has_ended() {
             emission.reseed(pass_seed(scene.photons.seed, self.report.passes_done));
-            let how = (resolution, ReadFrom::Fluence);
+            let how = (resolution, ReadFrom::Fluence, LightChoice::All);
             let report = &mut self.report;
             let lattice = lit_lattice::trace(scene, extinction, &emission, how, observer, report)?;
             self.add(&mut sums, || {

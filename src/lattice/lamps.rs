@@ -1,0 +1,105 @@
+//! The peaks that lamps make in scattered light, and cells that need not hold them.
+//!
+//! Where light of intensity I from a point scatters once, twice-scattered light falls as the inverse distance d to the point: the fluence is
+//! sigma_s I pi^2 / (4 d) of what nearby scatterers send on, as the integral of 1 / (|y|^2 |x - y|^2) over all y is pi^3 / |x|. Cells
+//! would flatten the peak over their edge; near a lamp they hold light times w = d / R instead, which has none, and what is read is divided by
+//! w. That is exact for any w as cells shrink.
+
+use crate::light::{Light, LightChoice};
+use crate::math::{DVec3, Ray, mean_channel};
+use crate::medium::Bounds;
+
+/// Lamps beyond which they cost more to look for than their peaks matter.
+const MOST_LAMPS: usize = 8;
+
+/// Share of all intensity below which a lamp's peak is lost in the light of the others.
+const LEAST_SHARE: f64 = 0.05;
+
+/// How far peaks reach \[cells\]: beyond, they are nearly straight over a cell.
+const REACH: f64 = 3.0;
+
+/// How near to a lamp the peak goes on \[cells\]: nearer, one of the noise that a cell holds would stand out.
+const NEAREST: f64 = 0.5;
+
+/// Lamps inside a medium.
+#[derive(Clone, Debug)]
+pub struct Lamps {
+    /// Positions \[m\].
+    lamps: Vec<DVec3>,
+    /// Edge of a cell \[m\].
+    edge: f64,
+}
+
+impl Lamps {
+    /// The lamps among the chosen lights inside bounds, for cells that are `edge` long \[m\]; `None` if there are none or too many.
+    pub fn of(lights: &[Light], choice: LightChoice, bounds: &Bounds, edge: f64) -> Option<Self> {
+        let lit = lights.iter().enumerate().filter(|(index, _)| choice.has_light(*index));
+        let lamp = |(_, light): (usize, &Light)| {
+            let position = light.position().filter(|position| bounds.contains(*position))?;
+            Some((position, mean_channel(light.color()?)))
+        };
+        let lamps: Vec<(DVec3, f64)> = lit.filter_map(lamp).collect();
+        let least: f64 = LEAST_SHARE * lamps.iter().map(|(_, intensity)| intensity).sum::<f64>();
+        let strong = lamps.into_iter().filter(|(_, intensity)| *intensity > least);
+        let lamps: Vec<DVec3> = strong.map(|(position, _)| position).collect();
+        (1..=MOST_LAMPS).contains(&lamps.len()).then_some(Self { lamps, edge })
+    }
+
+    /// What light at a place is multiplied by: 1 far from lamps.
+    #[inline]
+    pub fn weight(&self, place: DVec3) -> f64 {
+        let reach = REACH * self.edge;
+        let mut weight = 1.0;
+        for position in &self.lamps {
+            let squared = place.distance_squared(*position);
+            if squared < reach * reach {
+                weight *= squared.sqrt().max(NEAREST * self.edge) / reach;
+            }
+        }
+        weight
+    }
+
+    /// The mean weight along a piece of a ray that lies in one cell: that of the middles of its halves, which is right through a lamp, too.
+    #[inline]
+    pub fn mean_weight(&self, ray: &Ray, enters: f64, leaves: f64) -> f64 {
+        let quarter = 0.25 * (leaves - enters);
+        0.5 * (self.weight(ray.at(enters + quarter)) + self.weight(ray.at(leaves - quarter)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::PointLight;
+    use crate::math::Rgb;
+
+    fn lamp(position: DVec3, intensity: f64) -> Light {
+        Light::Point(PointLight { position, intensity: Rgb::splat(intensity) })
+    }
+
+    #[test]
+    fn weights_take_the_peaks_off() {
+        let bounds = Bounds::Box { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
+        let (near, far) = (DVec3::new(0.5, 0.0, 0.0), DVec3::new(9.0, 0.0, 0.0));
+        let weak = DVec3::new(-0.5, 0.0, 0.0);
+        let lights = [lamp(DVec3::ZERO, 1.0), lamp(near, 3.0), lamp(far, 1.0), lamp(weak, 0.1)];
+        let of = |choice| Lamps::of(&lights, choice, &bounds, 0.1);
+        let lamps = of(LightChoice::All).unwrap();
+        // In proportion to the distance within three cells, but for the nearest half cell; 1 beyond, and about the weak one.
+        for position in [DVec3::ZERO, near] {
+            for (distance, weight) in [(0.06, 0.2), (0.15, 0.5), (0.31, 1.0), (0.01, 0.5 / 3.0)] {
+                let found = lamps.weight(position + DVec3::Y * distance);
+                assert!((found - weight).abs() < 1e-12, "{distance}: {found}");
+            }
+        }
+        assert_eq!(lamps.weight(weak), 1.0);
+        assert!(of(LightChoice::Light(2)).is_none() && of(LightChoice::Medium).is_none());
+        assert_eq!(of(LightChoice::Light(1)).unwrap().weight(DVec3::ZERO), 1.0);
+        // Through the lamp: the mean distance is a quarter of the piece.
+        let ray = Ray::new(near - DVec3::X * 0.25, DVec3::X);
+        let mean = lamps.mean_weight(&ray, 0.0, 0.5);
+        assert!((mean - 0.125 / 0.3).abs() < 1e-12, "{mean}");
+        let many: Vec<Light> = (0..9).map(|_| lamp(DVec3::ZERO, 1.0)).collect();
+        assert!(Lamps::of(&many, LightChoice::All, &bounds, 0.1).is_none());
+    }
+}
