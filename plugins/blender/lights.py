@@ -1,6 +1,6 @@
 """Lights, whose watts are power: a point of P watts has P / (4 pi) W/sr, a flat light P / (pi area) W/(m^2 sr), a sun irradiance."""
 
-from math import acos, asin, cos, degrees, pi, radians, sin, sqrt
+from math import acos, asin, cos, degrees, pi, radians, sqrt
 
 from mathutils import Vector
 
@@ -52,10 +52,7 @@ def point(light, matrix_world, color, name, notes):
     position, radius = axes.point(matrix_world.translation), light.shadow_soft_size
     if radius == 0.0:
         return [{"kind": "point", "position": position, "intensity": divided(color, 4.0 * pi)}]
-    scales = sorted(matrix_world.to_scale())
-    if scales[2] - scales[0] > 1e-4 * scales[2]:
-        notes.append(f'"{name}": its scale is taken as alike on all axes')
-    radius *= scales[1]
+    # Blender takes no notice of the object's scale here.
     radiance = divided(color, 4.0 * pi * pi * radius * radius)
     return [{"kind": "sphere", "center": position, "radius": radius, "radiance": radiance}]
 
@@ -85,19 +82,23 @@ def spot(light, matrix_world, color, name, notes):
     edge = max((1.0 - cos(cone)) * light.spot_blend, 0.0)
     if edge < 1e-4:
         return [shape | {"intensity": intensity, "cone_angle": degrees(cone)}]
-    # Angles at which the edge is 0, then rises by eighths to 1.
-    cosines = [cos(cone) + edge * inverse_smoothstep(step / EDGE_STEPS) for step in range(EDGE_STEPS + 1)]
-    angles = [degrees(acos(min(cosine, 1.0))) for cosine in cosines]
-    share = divided(intensity, EDGE_STEPS)
+    inner = acos(min(cos(cone) + edge, 1.0))
+    angles = [cone + (inner - cone) * step / EDGE_STEPS for step in range(EDGE_STEPS + 1)]
+    reached = [smoothstep((cos(angle) - cos(cone)) / edge) for angle in angles]
     return [
-        shape | {"intensity": share, "cone_angle": outer, "falloff_angle": inner}
-        for outer, inner in zip(angles, angles[1:])
+        shape
+        | {
+            "intensity": [channel * (reached[step + 1] - reached[step]) for channel in intensity],
+            "cone_angle": degrees(angles[step]),
+            "falloff_angle": degrees(angles[step + 1]),
+        }
+        for step in range(EDGE_STEPS)
     ]
 
 
-def inverse_smoothstep(share):
-    """Where 3 x^2 - 2 x^3 reaches a share."""
-    return 0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)
+def smoothstep(x):
+    x = min(max(x, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
 
 
 def area(light, matrix_world, color, name, notes):

@@ -53,15 +53,16 @@ def turn_of(texture, name):
         return 0.0
     mapping, turn = link.from_node, (0.0,) * 3
     if mapping.type == "MAPPING":
-        sockets = mapping.inputs
-        fixed = not any(link_of(sockets[key]) for key in ("Location", "Rotation", "Scale"))
-        moved = any(sockets["Location"].default_value) and mapping.vector_type != "VECTOR"
-        turn = sockets["Rotation"].default_value
-        if not fixed or moved or any(turn[:2]) or tuple(sockets["Scale"].default_value) != (1.0,) * 3:
+        # Vectors and normals have no location.
+        location, rotation, scale = (mapping.inputs.get(key) for key in ("Location", "Rotation", "Scale"))
+        fixed = not any(link_of(socket) for socket in (location, rotation, scale) if socket)
+        moved = location is not None and any(location.default_value)
+        turn = rotation.default_value
+        if not fixed or moved or any(turn[:2]) or tuple(scale.default_value) != (1.0,) * 3:
             raise Refused(name, f'node "{mapping.name}" does more than turn about z')
         # A texture mapping is the inverse of a point mapping.
         turn = [-angle for angle in turn] if mapping.vector_type == "TEXTURE" else turn
-        link = link_of(sockets["Vector"])
+        link = link_of(mapping.inputs["Vector"])
     if link is None or link.from_node.type != "TEX_COORD" or link.from_socket.name != "Generated":
         raise Refused(name, "an environment image goes by Generated texture coordinates")
     return -degrees(turn[2])
