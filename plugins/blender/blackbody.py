@@ -6,7 +6,8 @@ Of intensity b, tint c and a temperature of T kelvin, Cycles adds an emissivity 
 
 where sigma is Stefan and Boltzmann's constant and color(T) the linear Rec.709 colour of a blackbody of luminance 1 (that of 800 K
 below, of 12000 K above). Channels outside of the gamut are 0 here, which Cycles lets be negative. A flame has one colour and a grid of
-numbers: three volumes, of red, green and blue, make up any colour.
+numbers: three volumes, of red, green and blue, make up any colour. Blender interpolates temperatures, the library emissivities, which rise
+more steeply: they are kept in voxels of half the size.
 """
 
 import os
@@ -38,6 +39,7 @@ def media(blackbody, place, density_change, directory):
     """Media of a file's transform whose flames are a blackbody: (intensity, tint, kelvin where the grid is 1, grid)."""
     intensity, tint, kelvin, grid = blackbody
     values, index_to_world, origin = photonvdb.read_vdb(place["file"], grid)
+    values, index_to_world, origin = refined(values, index_to_world, origin)
     emissivity = emissivities(np.maximum(values, 0.0) * kelvin, intensity)
     found = []
     for channel, share in enumerate(tint):
@@ -50,6 +52,18 @@ def media(blackbody, place, density_change, directory):
         keys = {"file": file, "density": "flame", "density_scale": 0.0, "albedo": 0.0, "flame": "flame", "flame_color": color}
         found.append(place | keys)
     return found
+
+
+def refined(values, index_to_world, origin):
+    """The same grid, 0 outside, interpolated to voxels of half the size."""
+    values = np.pad(values, 1)
+    for axis in range(3):
+        ahead = np.moveaxis(values, axis, 0)
+        finer = np.empty((2 * len(ahead) - 1, *ahead.shape[1:]), np.float32)
+        finer[::2] = ahead
+        finer[1::2] = 0.5 * (ahead[:-1] + ahead[1:])
+        values = np.moveaxis(finer, 0, axis)
+    return values, index_to_world @ np.diag((0.5, 0.5, 0.5, 1.0)), tuple(2 * (index - 1) for index in origin)
 
 
 def emissivities(kelvin, intensity):
