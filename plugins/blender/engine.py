@@ -63,7 +63,8 @@ class PhotonvdbRenderEngine(bpy.types.RenderEngine):
         for render_pass in result.layers[0].passes:
             if render_pass.name in pictures:
                 render_pass.rect.foreach_set(pictures[render_pass.name].ravel())
-        self.end_result(result, cancel=self.test_break())
+        # What was made before a break is shown, too.
+        self.end_result(result, cancel=self.test_break(), do_merge_results=True)
 
 
 class Progress:
