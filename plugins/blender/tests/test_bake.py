@@ -26,7 +26,7 @@ direction = [0.5, -1.0, -0.3]
 irradiance = [3.0, 2.5, 2.0]
 
 [photons]
-count = 300_000
+count = 100_000
 """
 
 
