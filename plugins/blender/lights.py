@@ -36,7 +36,7 @@ def color_of(light, name):
     power = light.energy * 2.0 ** getattr(light, "exposure", 0.0)
     tint = light.temperature_color if getattr(light, "use_temperature", False) else (1.0,) * 3
     shade = (1.0,) * 3
-    if light.use_nodes and light.node_tree:
+    if getattr(light, "use_nodes", True) and light.node_tree:
         output = output_of(light.node_tree)
         node = node_before(output.inputs["Surface"]) if output else None
         if node is None:

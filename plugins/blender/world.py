@@ -15,7 +15,7 @@ def environment(world, directory):
     if world is None:
         return None
     name = world.name
-    if not (world.use_nodes and world.node_tree):
+    if not (getattr(world, "use_nodes", True) and world.node_tree):
         return even(world.color)
     output = output_of(world.node_tree)
     if output is None:

@@ -38,6 +38,9 @@ class Stage:
         self.directory = directory
         self.scene = bpy.context.scene
         self.scene.render.resolution_x = self.scene.render.resolution_y = 48
+        if hasattr(self.scene.render.image_settings, "media_type"):  # Blender 5
+            self.scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
+            self.scene.render.image_settings.use_exr_interleave = True
         self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
         self.scene.render.image_settings.color_depth = "32"
         self.scene.render.image_settings.exr_codec = "NONE"
