@@ -83,7 +83,7 @@ def principled(node, name, grids):
     if attribute in grids:
         density = density.times(Term((1.0,) * 3, attribute))
         if density is None:
-            raise Refused(name, f'density is multiplied by two grids: clear Density Attribute, or what leads into Density')
+            raise Refused(name, 'density is multiplied by two grids: clear Density Attribute, or what leads into Density')
     color = read(sockets["Color"], name)
     attribute = sockets["Color Attribute"].default_value
     if attribute in grids:
