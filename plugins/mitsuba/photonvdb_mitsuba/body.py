@@ -85,7 +85,7 @@ def body_of(shape):
     if shape.has_flipped_normals():
         raise UnsupportedError(f"{name} has flipped normals, and its medium outside, which is not supported")
     if shape.class_name() == "Sphere":
-        to_world = matrix(values(shape)["to_world"])
+        to_world = matrix(values(shape)["to_world"], name)
         return Ball(name, medium, to_world[:3, 3], float(np.linalg.norm(to_world[:3, 0])))
     if shape.class_name() == "Cube":
         return Cube(name, medium, cube_to_world(shape, name))

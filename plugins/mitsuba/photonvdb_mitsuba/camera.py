@@ -20,7 +20,7 @@ def camera_table(sensor) -> dict:
     for axis in "xy":
         if number(known[f"principal_point_offset_{axis}"]) != 0:
             raise UnsupportedError(f"{name}: principal_point_offset_{axis} is not supported; set it to 0")
-    to_world = matrix(known["to_world"])
+    to_world = matrix(known["to_world"], name)
     if np.linalg.det(to_world[:3, :3]) < 0:
         raise UnsupportedError(f"{name}: to_world mirrors the image, which is not supported")
     width, height = (int(side) for side in numbers(sensor.film().size()))
@@ -42,7 +42,7 @@ def check_view(sensor, bodies):
     """
     name = described("sensor", sensor)
     known = values(sensor)
-    to_world = matrix(known["to_world"])
+    to_world = matrix(known["to_world"], name)
     position, forward = to_world[:3, 3], to_world[:3, 2]
     near, far = number(known["near_clip"]), number(known["far_clip"])
     for body in bodies:

@@ -18,14 +18,14 @@ FINER = 8
 LARGEST = 2048
 
 
-def environment_table(emitter, path) -> dict:
+def environment_table(emitter, name: str, path) -> dict:
     """The ``[[light]]`` of an envmap, whose image is written to ``path``."""
     known = values(emitter)
     image = np.asarray(known["data"], dtype=np.float32)[..., :3]
     rows, columns = image.shape[0], image.shape[1] - 2
     width = max(min(FINER * columns, LARGEST), columns)
     height = max(min(FINER * rows, LARGEST // 2), rows)
-    world_to_local = np.linalg.inv(matrix(known["to_world"])[:3, :3])
+    world_to_local = np.linalg.inv(matrix(known["to_world"], name)[:3, :3])
     finer = np.empty((height, width, 3), np.float32)
     for row in range(height):
         local = pixel_directions(row, width, height) @ world_to_local.T

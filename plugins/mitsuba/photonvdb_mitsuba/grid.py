@@ -82,7 +82,10 @@ def check_copy(volume, tensor, to_world, name: str):
     given, copied = (values_at(grid, points) for grid in (volume, known))
     # Six digits of a place leave an error of as many digits of the largest value.
     if np.abs(given - copied).max() > 1e-3 * np.abs(tensor).max():
-        raise UnsupportedError(f"{name} is not interpolated trilinearly; set its filter_type to trilinear, its wrap_mode to clamp")
+        raise UnsupportedError(
+            f"{name} is not interpolated as photonvdb does: set its filter_type to trilinear, its wrap_mode to clamp, "
+            "and give rotations in its to_world an axis of length 1"
+        )
 
 
 def values_at(volume, points) -> np.ndarray:

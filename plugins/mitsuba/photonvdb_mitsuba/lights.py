@@ -20,7 +20,7 @@ def light_table(emitter, directory, number_of: int) -> dict:
     if number(values(emitter)["sampling_weight"]) <= 0:
         raise UnsupportedError(f"{name} has a sampling_weight of 0, and is dark to Mitsuba; remove it")
     if kind == "EnvironmentMapEmitter":
-        return environment_table(emitter, directory / f"light{number_of}.exr")
+        return environment_table(emitter, name, directory / f"light{number_of}.exr")
     return READINGS[kind](emitter, name)
 
 
@@ -36,7 +36,7 @@ def point(emitter, name: str) -> dict:
 def spot(emitter, name: str) -> dict:
     """A cone of light along +z of its own space."""
     known, parts = values(emitter), children(emitter)
-    to_world = matrix(known["to_world"])
+    to_world = matrix(known["to_world"], name)
     texture = constant_spectrum(parts["texture"], f"{name}: texture")
     intensity = constant_spectrum(parts["intensity"], f"{name}: intensity")
     return {
@@ -53,7 +53,7 @@ def directional(emitter, name: str) -> dict:
     """Parallel light along +z of its own space."""
     return {
         "kind": "directional",
-        "direction": matrix(values(emitter)["to_world"])[:3, 2].tolist(),
+        "direction": matrix(values(emitter)["to_world"], name)[:3, 2].tolist(),
         "irradiance": constant_spectrum(children(emitter)["irradiance"], f"{name}: irradiance"),
     }
 

@@ -3,6 +3,8 @@
 import mitsuba as mi
 import numpy as np
 
+from .errors import UnsupportedError
+
 
 def children(thing) -> dict:
     """The objects inside an object, by the names that ``mi.traverse`` gives them."""
@@ -37,9 +39,15 @@ def numbers(value) -> list:
     return np.asarray(value, dtype=np.float64).ravel().tolist()
 
 
-def matrix(transform) -> np.ndarray:
-    """The 4 x 4 matrix of a transform of any variant, for column vectors."""
-    return np.asarray(transform.matrix, dtype=np.float64).reshape(4, 4)
+def matrix(transform, owner: str) -> np.ndarray:
+    """The 4 x 4 matrix of a transform of any variant, for column vectors; ``owner`` is whose it is, for an error."""
+    forth, back = (
+        np.asarray(way.matrix, dtype=np.float64).reshape(4, 4) for way in (transform, transform.inverse())
+    )
+    # Mitsuba keeps both, and takes the axis of a rotation as it is given.
+    if np.abs((forth @ back)[:3, :3] - np.eye(3)).max() > 1e-3:
+        raise UnsupportedError(f"{owner}: to_world and its inverse disagree; give rotations an axis of length 1")
+    return forth
 
 
 def described(kind: str, thing) -> str:
