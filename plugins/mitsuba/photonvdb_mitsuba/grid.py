@@ -89,12 +89,15 @@ def check_copy(volume, tensor, to_world, name: str):
 
 
 def values_at(volume, points) -> np.ndarray:
-    """Values of a volume at points."""
+    """Values of a volume at points, of shape (n, 3)."""
     place = mi.Interaction3f()
+    if not mi.variant().startswith("scalar"):
+        place.p = mi.Point3f(points.T.astype(np.float32))
+        return np.asarray(volume.eval_1(place), dtype=np.float64)
     seen = []
-    for point in points:
-        place.p = mi.Point3f(*point)
-        seen.append(float(np.asarray(volume.eval_1(place)).ravel()[0]))
+    for point in points.tolist():
+        place.p = point
+        seen.append(volume.eval_1(place))
     return np.array(seen)
 
 

@@ -28,4 +28,4 @@ def medium_table(body, directory, number_of: int) -> dict:
     else:
         raise UnsupportedError(f"{name} is not supported; media are homogeneous or heterogeneous")
     albedo = constant_volume(parts["albedo"], f"{name}: albedo")
-    return {**table, "albedo": albedo, "phase": phase_table(medium.phase_function())}
+    return {**table, "albedo": albedo, "phase": phase_table(medium.phase_function(), name)}

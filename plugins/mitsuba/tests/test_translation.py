@@ -22,7 +22,8 @@ def test_fog(fog, tmp_path):
     tables = translated(fog, tmp_path)
     (medium,), (light,) = tables["medium"], tables["light"]
     assert medium["kind"] == "homogeneous"
-    assert medium["bounds"] == {"min": [-1, -1, -1], "max": [1, 1, 1]}
+    assert medium["bounds"]["min"] == pytest.approx([-1, -1, -1])
+    assert medium["bounds"]["max"] == pytest.approx([1, 1, 1])
     assert medium["sigma_t"] == pytest.approx([1.0, 1.2, 1.4])
     assert medium["albedo"] == pytest.approx([0.9, 0.9, 0.9])
     assert medium["phase"] == {"kind": "henyey-greenstein", "g": pytest.approx(0.3)}
