@@ -73,7 +73,9 @@ def body_of(shape):
     """The body of a shape: a cube or a sphere of no surface, with a medium inside."""
     name = described("shape", shape)
     if shape.is_emitter():
-        raise UnsupportedError(f"{name} shines, which is not supported; lights are point, spot, directional, constant, envmap")
+        raise UnsupportedError(
+            f"{name} shines, which is not supported; lights are point, spot, directional, constant, envmap"
+        )
     medium = shape.interior_medium()
     if medium is None:
         raise UnsupportedError(f"{name} has no medium inside; photonvdb renders media alone, not surfaces")
@@ -81,7 +83,9 @@ def body_of(shape):
         bsdf = described("BSDF", shape.bsdf()) if shape.bsdf() else "its default BSDF"
         raise UnsupportedError(f"{name}: {bsdf} is not supported; bodies of media have the BSDF null")
     if shape.exterior_medium() is not None:
-        raise UnsupportedError(f"{name} has a medium outside, which is not supported; media are surrounded by empty space")
+        raise UnsupportedError(
+            f"{name} has a medium outside, which is not supported; media are surrounded by empty space"
+        )
     if shape.has_flipped_normals():
         raise UnsupportedError(f"{name} has flipped normals, and its medium outside, which is not supported")
     if shape.class_name() == "Sphere":

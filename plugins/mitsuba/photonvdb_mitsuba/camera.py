@@ -62,6 +62,10 @@ def check_medium(sensor, around: list):
     name = described("sensor", sensor)
     medium = sensor.get_medium()
     if around and medium is None:
-        raise UnsupportedError(f"{name} stands in {described('medium', around[0])} but does not name it; set its medium")
+        raise UnsupportedError(
+            f"{name} stands in {described('medium', around[0])} but does not name it; set its medium"
+        )
     if medium is not None and medium not in around:
-        raise UnsupportedError(f"{name} names {described('medium', medium)} but does not stand in it; remove its medium")
+        raise UnsupportedError(
+            f"{name} names {described('medium', medium)} but does not stand in it; remove its medium"
+        )

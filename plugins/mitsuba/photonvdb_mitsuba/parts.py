@@ -41,9 +41,7 @@ def numbers(value) -> list:
 
 def matrix(transform, owner: str) -> np.ndarray:
     """The 4 x 4 matrix of a transform of any variant, for column vectors; ``owner`` is whose it is, for an error."""
-    forth, back = (
-        np.asarray(way.matrix, dtype=np.float64).reshape(4, 4) for way in (transform, transform.inverse())
-    )
+    forth, back = (np.asarray(way.matrix, dtype=np.float64).reshape(4, 4) for way in (transform, transform.inverse()))
     # Mitsuba keeps both, and takes the axis of a rotation as it is given.
     if np.abs((forth @ back)[:3, :3] - np.eye(3)).max() > 1e-3:
         raise UnsupportedError(f"{owner}: to_world and its inverse disagree; give rotations an axis of length 1")

@@ -11,4 +11,6 @@ def phase_table(phase, owner: str) -> dict:
         return {"kind": "isotropic"}
     if kind == "HGPhaseFunction":
         return {"kind": "henyey-greenstein", "g": number(values(phase)["g"])}
-    raise UnsupportedError(f"{owner}: {described('phase function', phase)} is not supported; there are isotropic and hg")
+    raise UnsupportedError(
+        f"{owner}: {described('phase function', phase)} is not supported; there are isotropic and hg"
+    )

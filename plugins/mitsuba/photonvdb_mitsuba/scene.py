@@ -32,7 +32,9 @@ def scene_file(scene, sensor, directory) -> dict:
 def check_variant():
     """Refuses variants of other colours than RGB."""
     if not mi.variant().endswith("_rgb"):
-        raise UnsupportedError(f"the variant {mi.variant()} is not supported; photonvdb renders RGB: set an rgb variant")
+        raise UnsupportedError(
+            f"the variant {mi.variant()} is not supported; photonvdb renders RGB: set an rgb variant"
+        )
 
 
 def free_emitters(scene) -> list:

@@ -6,9 +6,10 @@ of their differences: up to twice the noise, as few bright blocks make most of i
 
 import mitsuba as mi
 import numpy as np
-import photonvdb_mitsuba  # noqa: F401
 import pytest
 from grids import blob, gridvolume, sky
+
+import photonvdb_mitsuba  # noqa: F401
 
 SIDE = 32
 BLOCK = 8

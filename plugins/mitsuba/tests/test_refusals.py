@@ -5,6 +5,7 @@ import numpy as np
 import photonvdb
 import pytest
 from grids import blob, gridvolume
+
 from photonvdb_mitsuba import UnsupportedError
 
 
@@ -25,7 +26,11 @@ def medium(name, **more):
 
 
 def texture():
-    return {"type": "bitmap", "data": mi.TensorXf(np.linspace(0, 1, 48, dtype=np.float32).reshape(4, 4, 3)), "raw": True}
+    return {
+        "type": "bitmap",
+        "data": mi.TensorXf(np.linspace(0, 1, 48, dtype=np.float32).reshape(4, 4, 3)),
+        "raw": True,
+    }
 
 
 SMOKE = {"type": "heterogeneous", "albedo": 0.9}
@@ -37,7 +42,10 @@ EMITTERS = [
     (lambda: {"type": "projector", "to_world": transform()}, ["lamp", "Projector"]),
     (lambda: {"type": "sunsky"}, ["lamp", "Sunsky"]),
     (lambda: {"type": "spot", "texture": texture()}, ["lamp", "SpotLight", "texture", "BitmapTexture"]),
-    (lambda: {"type": "point", "intensity": {"type": "blackbody", "temperature": 4000.0}}, ["lamp", "BlackBodySpectrum"]),
+    (
+        lambda: {"type": "point", "intensity": {"type": "blackbody", "temperature": 4000.0}},
+        ["lamp", "BlackBodySpectrum"],
+    ),
     (
         lambda: {"type": "spot", "to_world": transform().rotate([1, 1, 0], 30)},
         ["lamp", "SpotLight", "to_world", "axis of length 1"],

@@ -8,6 +8,7 @@ import mitsuba as mi
 import numpy as np
 import photonvdb
 import pytest
+
 from photonvdb_mitsuba import scene_file
 
 
@@ -53,7 +54,12 @@ def test_pixel_formats(fog, pixels, channels):
 def test_layers(fog):
     fog["integrator"]["aovs"] = "single_scatter, multiple_scatter,transmittance"
     scene = mi.load_dict(fog)
-    assert scene.integrator().aov_names()[:4] == ["single_scatter.R", "single_scatter.G", "single_scatter.B", "multiple_scatter.R"]
+    assert scene.integrator().aov_names()[:4] == [
+        "single_scatter.R",
+        "single_scatter.G",
+        "single_scatter.B",
+        "multiple_scatter.R",
+    ]
     seen = np.array(mi.render(scene))
     assert seen.shape == (8, 12, 12)
     assert seen[..., 3:6] + seen[..., 6:9] == pytest.approx(seen[..., :3], rel=1e-5)

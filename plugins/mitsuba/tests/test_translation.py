@@ -5,6 +5,7 @@ import numpy as np
 import photonvdb
 import pytest
 from grids import blob, gridvolume, sky
+
 from photonvdb_mitsuba import scene_file
 from photonvdb_mitsuba.environment import radiance
 
@@ -30,7 +31,9 @@ def test_fog(fog, tmp_path):
     assert light == {"kind": "point", "position": [0, 3, 1], "intensity": [10, 20, 30]}
 
 
-@pytest.mark.parametrize(("axis", "vertical"), [("x", 2 * np.degrees(np.arctan(np.tan(np.radians(20)) * 8 / 12))), ("y", 40)])
+@pytest.mark.parametrize(
+    ("axis", "vertical"), [("x", 2 * np.degrees(np.arctan(np.tan(np.radians(20)) * 8 / 12))), ("y", 40)]
+)
 def test_field_of_view(fog, tmp_path, axis, vertical):
     fog["camera"].update(fov=40, fov_axis=axis)
     camera = translated(fog, tmp_path)["camera"]
