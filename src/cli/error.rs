@@ -84,6 +84,13 @@ pub enum CliError {
     Stderr(io::Error),
     #[error("{path} is there already; give another name, or --force to replace it", path = path.display())]
     Exists { path: PathBuf },
+    #[error(
+        "{flag} would be written in place of {other}: both are {path}; give another name",
+        path = path.display()
+    )]
+    TakesPlace { flag: &'static str, other: String, path: PathBuf },
+    #[error("{source}; the image is kept in {kept}", kept = kept.display())]
+    Kept { source: FilmError, kept: PathBuf },
     #[error("give a volume to start from, --from FILE.vdb, or --preset NAME")]
     NothingToStartFrom,
     #[error("grid \"{grid}\" of {path} cannot be used: {reason}", path = path.display())]

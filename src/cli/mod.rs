@@ -10,6 +10,7 @@ mod bias;
 mod bytes;
 mod compare;
 mod completions;
+mod console;
 mod convert;
 mod count;
 mod error;
@@ -17,6 +18,7 @@ mod inspect;
 mod interrupt;
 mod man;
 mod new;
+mod outputs;
 mod presets;
 mod progress;
 mod reference;
@@ -39,6 +41,7 @@ use clap::Parser;
 use serde::Serialize;
 
 use args::{Arguments, Command};
+use console::say;
 use error::CliError;
 
 /// Runs the command typed.
@@ -62,7 +65,7 @@ pub fn run() -> ExitCode {
     match finished {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            say(&format!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }

@@ -8,6 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use photonvdb::files::WriteFailure;
 use photonvdb::render::{ErrorEstimate, Observer, RenderOptions, Stage};
 
+use super::console::say;
+
 /// Shows the stages of a render and passes Ctrl-C on to it.
 pub struct Progress {
     bar: RwLock<ProgressBar>,
@@ -79,7 +81,7 @@ impl Observer for Progress {
 
     fn checkpoint_failed(&self, failure: &WriteFailure) {
         // What was asked for did not happen: that is said even where quiet is asked for.
-        eprintln!("warning: the pass is not kept: {failure}");
+        say(&format!("warning: the pass is not kept: {failure}"));
     }
 
     fn cancelled(&self) -> bool {

@@ -4,6 +4,7 @@ use photonvdb::render::RenderReport;
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
+use super::console::say;
 use super::report::{CalibrationFigures, Comparison, PhotonCounts, Power, Seconds, is_stdout};
 
 /// Speaks unless told to be quiet.
@@ -110,7 +111,7 @@ impl Summary {
 
     fn line(self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     }
 }

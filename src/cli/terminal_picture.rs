@@ -8,6 +8,8 @@ use std::io::{self, Write};
 use photonvdb::film::{Film, Pixel, tone_mapped};
 use photonvdb::math::Rgb;
 
+use super::console::columns;
+
 /// Largest picture \[pixels\].
 const MAX_SIZE: [usize; 2] = [120, 96];
 
@@ -24,17 +26,6 @@ pub fn show(film: &Film) -> io::Result<()> {
         env::var("COLORTERM").is_ok_and(|value| value == "truecolor" || value == "24bit");
     let picture = draw(&shrunk(film, columns), if is_direct { direct } else { indexed });
     io::stderr().lock().write_all(picture.as_bytes())
-}
-
-/// Width of the terminal, if stderr is one that tells.
-fn columns() -> Option<usize> {
-    #[cfg(unix)]
-    {
-        let size = rustix::termios::tcgetwinsize(io::stderr()).ok()?;
-        (size.ws_col > 0).then_some(usize::from(size.ws_col))
-    }
-    #[cfg(not(unix))]
-    None
 }
 
 /// Lines of upper half blocks: the upper pixel in front, the lower one behind.

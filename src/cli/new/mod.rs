@@ -11,6 +11,7 @@ use std::path::Path;
 use photonvdb::math::DVec3;
 use photonvdb::scene::Preset;
 
+use super::console::say;
 use super::error::CliError;
 use super::report::is_stdout;
 use super::text_file::write_text;
@@ -45,10 +46,9 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     write_text(path, &scene.join())?;
     if !is_stdout(path) {
         let name = path.display();
-        eprintln!(
+        say(&format!(
             "wrote {name}; now: photonvdb render {name} -o {}",
-            path.with_extension("exr").display()
-        );
+            path.with_extension("exr").display()));
     }
     Ok(())
 }
@@ -94,13 +94,12 @@ fn around_volume(
         _ => Path::new(""),
     };
     let grid = volume.density();
-    eprintln!(
+    say(&format!(
         "{}: density from grid {:?}, {} active voxels, {} m across",
         file.display(),
         grid.unique_name,
         grid.active_voxel_count,
-        short((high - low).max_element()),
-    );
+        short((high - low).max_element())));
 
     let mut medium = "[medium]\n".to_owned();
     medium += &line("kind", "\"vdb\"", "");

@@ -9,6 +9,7 @@ use photonvdb::film::{
 use photonvdb::reference::{Reference, render_reference};
 use photonvdb::scene::Scene;
 
+use super::console::say;
 use super::error::CliError;
 use super::interrupt;
 use super::thread_pool;
@@ -21,25 +22,25 @@ pub fn run(arguments: &ReferenceArguments) -> Result<(), CliError> {
     let outputs = [Some(&arguments.output), arguments.preview.as_ref()];
     outputs.into_iter().flatten().try_for_each(|path| check_writable(path))?;
     let scene = Scene::load_with(&arguments.scene, &arguments.overrides())?;
-    let say = |text: &str| {
+    let tell = |text: &str| {
         if !arguments.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     };
-    scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    scene.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let pool = thread_pool(arguments.threads)?;
     let bar = Bar::new(arguments.quiet, interrupt::catch()?);
     let reference = pool.install(|| render_reference(&scene, &arguments.limits(), &bar));
     bar.finish();
     let reference = reference?;
     if reference.progress.share_done < 1.0 {
-        say("ended before a limit was reached");
+        tell("ended before a limit was reached");
     }
     pool.install(|| write_images(arguments, &scene, &reference))?;
-    say(&summary(&reference));
+    tell(&summary(&reference));
     let names: Vec<_> =
         outputs.into_iter().flatten().map(|path| path.display().to_string()).collect();
-    say(&format!("wrote {}", names.join(", ")));
+    tell(&format!("wrote {}", names.join(", ")));
     Ok(())
 }
 
