@@ -63,7 +63,10 @@ mod tests {
         assert_eq!(wrapped(text, 10), "a line of\n  words\nshort");
         assert_eq!(wrapped(text, 15), text);
         assert_eq!(wrapped("aligned   by   spaces", 80), "aligned   by   spaces");
-        assert_eq!(wrapped("cannot write /a/path/that/is/long: no", 12), "cannot write\n  /a/path/that/is/long:\n  no");
+        assert_eq!(
+            wrapped("cannot write /a/path/that/is/long: no", 12),
+            "cannot write\n  /a/path/that/is/long:\n  no"
+        );
         assert_eq!(wrapped("ä ö ü ß", 7), "ä ö ü ß");
     }
 }

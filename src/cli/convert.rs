@@ -33,7 +33,8 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
         "wrote {}: {} grid{plural}, {active} active voxels, {input_len} bytes -> {}",
         arguments.output.display(),
         written.len(),
-        byte_count(&arguments.output)?));
+        byte_count(&arguments.output)?
+    ));
     Ok(())
 }
 
@@ -145,7 +146,8 @@ fn summarise(grid: &WrittenGrid, source: &GridSummary) {
     let name = if grid.unique_name.is_empty() { "(no name)" } else { &grid.unique_name };
     say(&format!(
         "{name}: {} of {} active voxels, {} bytes",
-        grid.active_voxel_count, source.active_voxel_count, grid.byte_count));
+        grid.active_voxel_count, source.active_voxel_count, grid.byte_count
+    ));
 }
 
 fn byte_count(path: &Path) -> Result<u64, CliError> {

@@ -95,6 +95,11 @@ pub enum CliError {
     NothingToStartFrom,
     #[error("grid \"{grid}\" of {path} cannot be used: {reason}", path = path.display())]
     UnusableGrid { grid: String, path: PathBuf, reason: String },
+    #[error(
+        "{path} has no grid of numbers that could be densities; `photonvdb inspect {path}` lists its grids",
+        path = path.display()
+    )]
+    NoDensity { path: PathBuf },
     #[error("{path} cannot be named in a scene: its name is not Unicode", path = path.display())]
     UnwritablePath { path: PathBuf },
 }

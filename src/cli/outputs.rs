@@ -10,25 +10,28 @@ use photonvdb::scene::{Overrides, SceneFile};
 use super::error::CliError;
 use super::report::is_stdout;
 
-/// A file and the flag that names it.
-type Named<'a> = (&'static str, &'a Path);
+/// A flag and the file it names, if it is given.
+type Named<'a> = (&'static str, Option<&'a Path>);
 
 /// Fails early where an output cannot be written, or would take the place of an input or of another output. Of the inputs those that
 /// the scene at `scene` names are looked at, too.
 pub fn check(outputs: &[Named], scene: &Path, inputs: &[Named]) -> Result<(), CliError> {
     let mut taken: Vec<(String, PathBuf)> = Vec::new();
-    let named = inputs.iter().map(|(flag, path)| ((*flag).to_owned(), path.to_path_buf()));
+    let named = inputs
+        .iter()
+        .filter_map(|(flag, path)| Some(((*flag).to_owned(), path.as_ref()?.to_path_buf())));
     for (what, path) in named.chain(files_of(scene)) {
         taken.extend(identity(&path).map(|identity| (what, identity)));
     }
-    for (flag, path) in outputs.iter().filter(|(_, path)| !is_stdout(path)) {
+    let given = outputs.iter().filter_map(|(flag, path)| Some((*flag, (*path)?)));
+    for (flag, path) in given.filter(|(_, path)| !is_stdout(path)) {
         check_writable(path)?;
         let Some(identity) = identity(path) else { continue };
         if let Some((other, _)) = taken.iter().find(|(_, taken)| *taken == identity) {
-            let (flag, other, path) = (*flag, other.clone(), path.to_path_buf());
+            let (other, path) = (other.clone(), path.to_path_buf());
             return Err(CliError::TakesPlace { flag, other, path });
         }
-        taken.push(((*flag).to_owned(), identity));
+        taken.push((flag.to_owned(), identity));
     }
     Ok(())
 }

@@ -160,9 +160,8 @@ mod tests {
         assert!((volume / exact - 1.0).abs() < 2e-3, "{volume} {exact}");
         let full = (shape.cell_volume() * shape.power_scale()) as f32;
         // An even fluence of 3 leaves power times length in proportion to what is filled.
-        let sums: Vec<Vec3A> = (0..shape.cell_count())
-            .map(|i| Vec3A::new(3.0, 1.0, 0.0) * share(i) * full)
-            .collect();
+        let sums: Vec<Vec3A> =
+            (0..shape.cell_count()).map(|i| Vec3A::new(3.0, 1.0, 0.0) * share(i) * full).collect();
         let cells = Cells::from_sums(&shape, vec![sums]);
         let lattice = LightLattice::Colored([cells.coarser(), cells]);
         for direction in [DVec3::X, DVec3::NEG_Y, DVec3::ONE.normalize()] {

@@ -96,10 +96,7 @@ struct Fill<'a, E> {
 }
 
 impl<E: Extinction> Fill<'_, E> {
-    fn towards_camera<L: CellLight>(
-        &mut self,
-        phase: Phase,
-    ) -> Result<[Cells<L>; 2], RenderError> {
+    fn towards_camera<L: CellLight>(&mut self, phase: Phase) -> Result<[Cells<L>; 2], RenderError> {
         let (shape, extinction) = (self.shape, self.extinction);
         let camera = self.scene.camera.position();
         self.levels(|| CameraDeposit::<E, L>::new(shape, extinction, phase, camera))

@@ -4,7 +4,6 @@ pub mod args;
 
 use std::collections::BTreeMap;
 
-use photonvdb::files::check_writable;
 use photonvdb::math::{Rgb, mean_channel};
 use photonvdb::medium::vdb::{
     GridClass, GridToWrite, MetadataValue, SparseGrid, WriteOptions, WrittenGrid, write_vdb,
@@ -18,6 +17,7 @@ use photonvdb::scene::Scene;
 use super::console::say;
 use super::error::CliError;
 use super::interrupt;
+use super::outputs;
 use super::progress::Progress;
 use super::thread_pool;
 use args::BakeArguments;
@@ -25,7 +25,7 @@ use args::BakeArguments;
 /// Bakes what the arguments ask for.
 pub fn run(arguments: &BakeArguments) -> Result<(), CliError> {
     // What can fail must fail before the work, not after it.
-    check_writable(&arguments.output)?;
+    outputs::check(&[("--output", Some(&arguments.output))], &arguments.scene, &[])?;
     let overrides = arguments.overrides();
     let scene = Scene::load_with(&arguments.scene, &overrides)?;
     let options = arguments.options();

@@ -31,6 +31,7 @@ pub fn draw(directory: &Path, seed: u64) -> Result<(), CliError> {
         figures.len(),
         numbers.len(),
         directory.display(),
-        experiments.len()));
+        experiments.len()
+    ));
     Ok(())
 }

@@ -8,8 +8,8 @@ use photonvdb::lab::{SceneComparison, SceneComparisonError};
 use photonvdb::scene::{Overrides, Scene};
 
 use super::args::CompareArguments;
-use crate::cli::console::say;
 use super::{chart, emissions, scene_summary};
+use crate::cli::console::say;
 use crate::cli::error::CliError;
 use crate::cli::resources::cpu_seconds;
 use crate::cli::thread_pool;

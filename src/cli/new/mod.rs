@@ -48,7 +48,8 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
         let name = path.display();
         say(&format!(
             "wrote {name}; now: photonvdb render {name} -o {}",
-            path.with_extension("exr").display()));
+            path.with_extension("exr").display()
+        ));
     }
     Ok(())
 }
@@ -99,7 +100,15 @@ fn around_volume(
         file.display(),
         grid.unique_name,
         grid.active_voxel_count,
-        short((high - low).max_element())));
+        short((high - low).max_element())
+    ));
+
+    if let Some(crop) = volume.worth_cropping() {
+        let file = file.display();
+        say(&format!(
+            "most of its active voxels are empty; without them it renders faster and sharper: photonvdb convert {file} -o small.vdb --crop {crop}"
+        ));
+    }
 
     let mut medium = "[medium]\n".to_owned();
     medium += &line("kind", "\"vdb\"", "");
