@@ -251,7 +251,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "OUT.png", value_parser = png_name())]
     pub preview: Option<PathBuf>,
 
-    /// Show the picture in the terminal, small, in half blocks
+    /// Show the picture in the terminal, small, in half blocks: after passes, and when it is done
     #[arg(long)]
     pub show: bool,
 

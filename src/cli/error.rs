@@ -80,8 +80,6 @@ pub enum CliError {
     Interrupt(#[from] ctrlc::Error),
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
-    #[error("cannot write to stderr: {0}")]
-    Stderr(io::Error),
     #[error("{path} is there already; give another name, or --force to replace it", path = path.display())]
     Exists { path: PathBuf },
     #[error(

@@ -19,7 +19,6 @@ use super::report::{CalibrationFigures, Comparison, Report, Seconds};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
-use super::terminal_picture;
 use super::text_file::write_json;
 use super::thread_pool;
 
@@ -46,7 +45,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     if resumed.is_some() {
         summary.resumed(passes_before, seconds_before);
     }
-    let progress = Progress::new(&options, passes_before, arguments.quiet, interrupted);
+    let progress = Progress::new(&options, passes_before, arguments.quiet, interrupted)
+        .with_pictures(arguments.show);
     let save_to = arguments.checkpoint.as_deref();
     let checkpoints = Checkpoints { resume_from: resumed, save_to };
     let rendering = pool.install(|| render_from(&scene, &options, &progress, checkpoints))?;
@@ -89,9 +89,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         let error = compare(&RgbImage::from(&rendering.film), &reference)?;
         report.comparison = Some(Comparison::new(path, error));
     }
-    if arguments.show {
-        terminal_picture::show(&rendering.film).map_err(CliError::Stderr)?;
-    }
+    progress.show_finished(&rendering.film);
     report.seconds.total = seconds_before + started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {
         write_json(path, &report)?;
