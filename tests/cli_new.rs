@@ -150,6 +150,8 @@ fn a_preset_alone_is_a_block_of_it() {
     let work = Workspace::new();
     for name in ["fog", "steam", "skim-milk", "regular-milk"] {
         let scene = make(&work, &format!("--preset {name}"));
+        let text = fs::read_to_string(work.path("made.toml")).unwrap();
+        assert_eq!(text.contains("gather = \"bounce\""), name != "skim-milk", "{text}");
         assert!(matches!(
             scene.medium.extinction,
             MediumExtinction::Uniform(_) | MediumExtinction::Chromatic(_)

@@ -28,6 +28,9 @@ const G: f64 = 0.3;
 /// Of one that glows: it must absorb, for heat glows as much as it absorbs.
 const GLOWING_ALBEDO: f64 = 0.8;
 
+/// Mean cosine above which few photons fly towards the camera, and those that do count for much.
+const SHARP: f64 = 0.7;
+
 /// Share of the lights beside a medium that glows.
 const DIMMED: f64 = 0.2;
 
@@ -69,12 +72,13 @@ fn of_preset(arguments: &NewArguments, preset: Preset) -> SceneText {
     let bounds = format!("{{ min = {}, max = {} }}", text::numbers(-half), text::numbers(half));
     medium +=
         &line("bounds", &bounds, &format!("m: optical depth {} from face to face", number(depth)));
-    medium += &preset_values(preset);
+    medium += &preset_values(preset, false);
     SceneText {
         opening: opening(&format!("the preset {}", preset.name), &arguments.scene),
         camera: text::camera(&view),
         medium,
         lights: text::lights(&view, 1.0),
+        gathering: gathering(Some(preset)),
     }
 }
 
@@ -124,7 +128,7 @@ fn around_volume(
     );
     medium += &line("density_scale", &short(density_scale), &meaning);
     medium += &match preset {
-        Some(preset) => preset_values(preset),
+        Some(preset) => preset_values(preset, true),
         None => scattering(glow.is_some(), volume.color()),
     };
     medium += &match &glow {
@@ -138,6 +142,7 @@ fn around_volume(
         camera: text::camera(&view),
         medium,
         lights: text::lights(&view, dimmed),
+        gathering: gathering(preset),
     })
 }
 
@@ -223,11 +228,19 @@ fn preset_line(preset: Preset) -> String {
     line("preset", &quoted(preset.name), preset.about())
 }
 
-/// What a preset sets, as comments.
-fn preset_values(preset: Preset) -> String {
+/// What a preset sets, as comments: of a volume all but how dense it is.
+fn preset_values(preset: Preset, is_volume: bool) -> String {
     let mut text = "# It sets, where nothing is said here:\n".to_owned();
-    for setting in preset.settings() {
+    for setting in preset.settings().filter(|line| !(is_volume && line.starts_with("sigma_t"))) {
         text += &format!("#   {setting}\n");
     }
     text
+}
+
+/// How light of a preset is gathered, where the default would be the slower way to a smooth picture.
+fn gathering(preset: Option<Preset>) -> &'static str {
+    match preset {
+        Some(preset) if preset.mean_cosine() > SHARP => text::BOUNCE,
+        _ => "",
+    }
 }
