@@ -6,8 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cli_run::Workspace;
-use photonvdb::math::{DVec3, Span, max_channel, mean_channel};
-use photonvdb::medium::vdb::{VdbFile, VolumeSource};
+use photonvdb::math::{DAffine3, DVec3, Span, max_channel, mean_channel};
+use photonvdb::medium::vdb::{
+    GridToWrite, GridValue, SparseGrid, VdbFile, VolumeSource, WriteOptions, write_vdb,
+};
 use photonvdb::medium::{Extinction, MediumExtinction};
 use photonvdb::render::{RenderOptions, Unobserved, render};
 use photonvdb::scene::{Overrides, Scene};
@@ -148,6 +150,8 @@ fn a_preset_alone_is_a_block_of_it() {
     let work = Workspace::new();
     for name in ["fog", "steam", "skim-milk", "regular-milk"] {
         let scene = make(&work, &format!("--preset {name}"));
+        let text = fs::read_to_string(work.path("made.toml")).unwrap();
+        assert_eq!(text.contains("gather = \"bounce\""), name != "skim-milk", "{text}");
         assert!(matches!(
             scene.medium.extinction,
             MediumExtinction::Uniform(_) | MediumExtinction::Chromatic(_)
@@ -178,4 +182,63 @@ fn what_is_there_stays() {
     work.run("new a.toml --preset frog").fails_with("known are fog, ");
     work.run("new a.toml --from none.vdb").fails_with("none.vdb");
     assert_eq!(work.names(), ["fog.toml"]);
+}
+
+/// Leaves of 8^3 active voxels, each of one value.
+fn leaves<V: GridValue + Default>(leaves: &[([i32; 3], V)]) -> SparseGrid<V> {
+    SparseGrid {
+        background: V::default(),
+        index_to_world: DAffine3::from_scale(DVec3::splat(0.1)),
+        leaves: leaves.iter().map(|(origin, _)| *origin).collect(),
+        masks: vec![[u64::MAX; 8]; leaves.len()],
+        values: leaves.iter().flat_map(|(_, value)| [*value; 512]).collect(),
+        tiles: Vec::new(),
+    }
+}
+
+/// Exporters leave active voxels of density 0: they are not what the picture is of.
+#[test]
+fn empty_voxels_are_not_framed() {
+    let work = Workspace::new();
+    let write = |name: &str, grid: &SparseGrid<f32>| {
+        let grids = [GridToWrite::new("density", grid)];
+        write_vdb(&work.path(name), &grids, &WriteOptions::default()).unwrap();
+    };
+    write("tight.vdb", &leaves(&[([80, 80, 80], 1.0)]));
+    write("padded.vdb", &leaves(&[([0, 0, 0], 0.0), ([80, 80, 80], 1.0), ([160, 160, 160], 0.0)]));
+    let [tight, padded] = ["tight", "padded"].map(|name| {
+        let run = work.run(&format!("new {name}.toml --from {name}.vdb"));
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        (Scene::load(&work.path(&format!("{name}.toml"))).unwrap(), run.stderr)
+    });
+    assert_eq!(padded.0.camera.position(), tight.0.camera.position());
+    let crop = "photonvdb convert padded.vdb -o small.vdb --crop 79,79,79,88,88,88";
+    assert!(padded.1.contains(crop), "{}", padded.1);
+    assert!(!tight.1.contains("--crop"), "{}", tight.1);
+    assert_eq!(work.run(crop.trim_start_matches("photonvdb ")).code, Some(0));
+    let small = VdbFile::open(&work.path("small.vdb")).unwrap();
+    assert_eq!(small.grids()[0].active_voxel_count, 512);
+}
+
+#[test]
+fn volumes_that_no_scene_can_show_are_refused() {
+    let work = Workspace::new();
+    let options = WriteOptions::default();
+    for (name, value, said) in [
+        ("zero.vdb", 0.0, "no density is above 0"),
+        ("negative.vdb", -1.0, "no density is above 0"),
+        ("nan.vdb", f32::NAN, "no density is above 0"),
+        ("faint.vdb", 1e-38, "its densities are as good as 0"),
+    ] {
+        let grid = leaves(&[([0; 3], value)]);
+        write_vdb(&work.path(name), &[GridToWrite::new("density", &grid)], &options).unwrap();
+        let refused = work.run(&format!("new a.toml --from {name}"));
+        refused.fails_with(&format!("grid \"density\" of {name} cannot be used: {said}"));
+    }
+    let colors = leaves(&[([0; 3], [1.0_f32; 3])]);
+    write_vdb(&work.path("colors.vdb"), &[GridToWrite::new("Cd", &colors)], &options).unwrap();
+    let refused = work.run("new a.toml --from colors.vdb");
+    refused
+        .fails_with("no grid of numbers that could be densities; `photonvdb inspect colors.vdb`");
+    assert!(!work.path("a.toml").exists());
 }

@@ -1,4 +1,5 @@
-//! A scene a million times smaller, larger, or a million times its size away, makes the same image.
+//! A scene a million times smaller, larger, or a million times its size away, makes the same image; so does one as small as an atom or as large
+//! as a nebula.
 
 mod grid_support;
 mod transport_support;
@@ -9,8 +10,8 @@ use photonvdb::film::{Film, RgbImage, compare};
 use photonvdb::light::{DirectionalLight, Light, PointLight, QuadLight, SphereLight, SpotLight};
 use photonvdb::math::{DAffine3, DVec3, Rgb};
 use photonvdb::medium::{Bounds, Medium};
-use photonvdb::render::{RenderOptions, Unobserved, render};
-use photonvdb::scene::Scene;
+use photonvdb::render::{Gather, RenderOptions, Unobserved, render};
+use photonvdb::scene::{RenderSettings, Scene};
 use transport_support::*;
 
 /// Where a scene of size 1 about the origin is put.
@@ -57,12 +58,13 @@ impl Place {
         ]
     }
 
-    fn image(self, medium: Medium) -> Film {
+    fn image(self, medium: Medium, gather: Gather) -> Film {
         let (position, middle) = (self.point(2.2, 1.8, 4.2), self.point(0.0, 0.0, 0.0));
         let lights = self.lights();
         let camera = Camera::look_at(position, middle, DVec3::Y, 0.66, [24, 24]).unwrap();
         let base = scene(medium, white_sky(), 20_000);
-        let scene = Scene { camera, lights, ..base };
+        let settings = RenderSettings { gather, ..base.render };
+        let scene = Scene { camera, lights, render: settings, ..base };
         render(&scene, &RenderOptions::passes(1), &Unobserved).unwrap().film
     }
 
@@ -90,14 +92,17 @@ fn size_and_place_do_not_matter() {
         Place { scale: 1e6, ..home },
         Place { shift: DVec3::new(1e6, -1e6, 5e5), ..home },
         Place { scale: 1e6, shift: DVec3::splat(1e12) },
+        Place { scale: 1e-13, ..home },
+        Place { scale: 1e16, ..home },
     ];
-    for kind in 0..3 {
-        let expected = RgbImage::from(&home.image(home.medium(kind)));
+    let cases = (0..3).flat_map(|kind| [(kind, Gather::Knn), (kind, Gather::Lattice)]);
+    for (kind, gather) in cases {
+        let expected = RgbImage::from(&home.image(home.medium(kind), gather));
         for place in places {
-            let image = RgbImage::from(&place.image(place.medium(kind)));
+            let image = RgbImage::from(&place.image(place.medium(kind), gather));
             let error = compare(&image, &expected).unwrap();
-            println!("medium {kind}, {place:?}: {error:?}");
-            assert!(error.rel_rmse < 1e-4, "medium {kind}, {place:?}: {error:?}");
+            println!("medium {kind}, {gather:?}, {place:?}: {error:?}");
+            assert!(error.rel_rmse < 1e-4, "medium {kind}, {gather:?}, {place:?}: {error:?}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! What can be typed, and the help that teaches it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use photonvdb::film::ExrOptions;
 use photonvdb::medium::vdb::{IndexBox, Limits, WriteCompression, WriteOptions};
-use photonvdb::render::{CostlyLayers, RenderOptions};
+use photonvdb::render::{CostlyLayers, Gather, RenderOptions};
 use photonvdb::scene::{Overrides, Scene};
 
 use super::bake::args::BakeArguments;
@@ -15,6 +15,7 @@ use super::bytes::parse_bytes;
 use super::compare::args::CompareArguments;
 use super::completions::CompletionsArguments;
 use super::count::{parse_count, parse_positive, parse_resolution};
+use super::file_names::{exr_name, png_name, vdb_name};
 use super::man::ManArguments;
 use super::new::args::NewArguments;
 use super::presets::PresetsArguments;
@@ -144,7 +145,7 @@ pub struct RenderArguments {
     pub scene: PathBuf,
 
     /// Image to write: linear OpenEXR with all layers
-    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr_name)]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = exr_name())]
     pub output: PathBuf,
 
     /// Photons emitted per pass [default: photons.count of the scene]
@@ -247,24 +248,16 @@ pub struct RenderArguments {
     pub report: Option<PathBuf>,
 
     /// Tone-mapped picture for a quick look
-    #[arg(long, value_name = "OUT.png")]
+    #[arg(long, value_name = "OUT.png", value_parser = png_name())]
     pub preview: Option<PathBuf>,
 
-    /// Show the picture in the terminal, small, in half blocks
+    /// Show the picture in the terminal, small, in half blocks: after passes, and when it is done
     #[arg(long)]
     pub show: bool,
 
     /// Reading volumes
     #[command(flatten)]
-    pub volume: VolumeArguments,
-
-    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
-    #[arg(long)]
-    pub strict: bool,
-
-    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
-    #[arg(long)]
-    pub sdf_to_fog: bool,
+    pub volume: SceneVolumeArguments,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -284,6 +277,34 @@ impl VolumeArguments {
     pub fn limits(&self) -> Limits {
         let default = Limits::default();
         Limits { max_bytes: self.max_volume_memory.unwrap_or(default.max_bytes) }
+    }
+}
+
+/// How the volumes of a scene are read.
+#[derive(Args, Debug)]
+pub struct SceneVolumeArguments {
+    /// What reading may cost
+    #[command(flatten)]
+    pub memory: VolumeArguments,
+
+    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
+    #[arg(long)]
+    pub strict: bool,
+
+    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
+    #[arg(long)]
+    pub sdf_to_fog: bool,
+}
+
+impl SceneVolumeArguments {
+    /// What replaces values of the scene file, and nothing else.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            sdf_to_fog: self.sdf_to_fog.then_some(true),
+            max_volume_memory: self.memory.max_volume_memory,
+            strict: self.strict,
+            ..Overrides::default()
+        }
     }
 }
 
@@ -331,7 +352,7 @@ pub struct ConvertArguments {
     pub input: PathBuf,
 
     /// OpenVDB file to write; may be the one that is read
-    #[arg(short, long, value_name = "OUT.vdb", value_parser = parse_vdb_name)]
+    #[arg(short, long, value_name = "OUT.vdb", value_parser = vdb_name())]
     pub output: PathBuf,
 
     /// Grid to write, may be given several times [default: every grid that can be converted]
@@ -402,10 +423,33 @@ impl RenderArguments {
             samples_per_pixel: self.samples,
             photons_only: self.photons_only.then_some(true),
             background: self.holdout.then(|| "holdout".to_string()),
-            sdf_to_fog: self.sdf_to_fog.then_some(true),
-            max_volume_memory: self.volume.max_volume_memory,
-            strict: self.strict,
+            ..self.volume.overrides()
         }
+    }
+
+    /// Flags given that change nothing in this scene, and what they are for.
+    pub fn idle_flags(
+        &self,
+        scene: &Scene,
+        options: &RenderOptions,
+    ) -> Vec<(&'static str, &'static str)> {
+        let gather = scene.render.gather;
+        let has = |layer| self.layers.contains(&layer);
+        let is_knn = gather == Gather::Knn;
+        let flags = [
+            ("--k", "--gather knn", self.k.is_some() && !is_knn),
+            ("--divisor", "--gather knn", self.divisor.is_some() && !is_knn),
+            ("--layers photon_count", "--gather knn", has(ExtraLayer::PhotonCount) && !is_knn),
+            ("--lattice", "--gather lattice", self.lattice.is_some() && is_knn),
+            ("--bounces", "--gather bounce", self.bounces.is_some() && gather != Gather::Bounce),
+            (
+                "--layers variance",
+                "two --passes or more",
+                has(ExtraLayer::Variance) && options.passes == 1,
+            ),
+        ];
+        let idle = flags.into_iter().filter(|(.., is_idle)| *is_idle);
+        idle.map(|(flag, purpose, _)| (flag, purpose)).collect()
     }
 
     /// When the render ends.
@@ -436,27 +480,6 @@ impl RenderArguments {
 pub fn parse_passes(text: &str) -> Result<u32, String> {
     let count = parse_count(text)?;
     u32::try_from(count).map_err(|_| format!("`{text}` passes would never end"))
-}
-
-/// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
-pub fn parse_exr_name(text: &str) -> Result<PathBuf, String> {
-    match Path::new(text).extension() {
-        Some(extension) if !extension.eq_ignore_ascii_case("exr") => Err(format!(
-            "the image is written as OpenEXR, its name must end in .exr (for a .{} use --preview)",
-            extension.display()
-        )),
-        _ => Ok(text.into()),
-    }
-}
-
-/// Refuses names that promise another format. A name without extension is taken as it is (`/dev/null`).
-pub fn parse_vdb_name(text: &str) -> Result<PathBuf, String> {
-    match Path::new(text).extension() {
-        Some(extension) if !extension.eq_ignore_ascii_case("vdb") => {
-            Err("grids are written as OpenVDB, the file's name must end in .vdb".into())
-        }
-        _ => Ok(text.into()),
-    }
 }
 
 /// Parses `-8,0,0,7,15,15`: the lowest and the highest voxel of a box.

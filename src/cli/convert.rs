@@ -13,6 +13,7 @@ use photonvdb::medium::vdb::{
 };
 
 use super::args::ConvertArguments;
+use super::console::say;
 use super::error::CliError;
 
 /// Writes the grids that the arguments name.
@@ -28,12 +29,12 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
     let active: u64 =
         written.iter().fold(0, |sum, grid| sum.saturating_add(grid.active_voxel_count));
     let plural = if written.len() == 1 { "" } else { "s" };
-    eprintln!(
+    say(&format!(
         "wrote {}: {} grid{plural}, {active} active voxels, {input_len} bytes -> {}",
         arguments.output.display(),
         written.len(),
         byte_count(&arguments.output)?
-    );
+    ));
     Ok(())
 }
 
@@ -54,12 +55,12 @@ fn chosen_grids(input: &VdbFile, arguments: &ConvertArguments) -> Result<Vec<usi
 /// Every grid that can be converted; tells which cannot.
 fn convertible_grids(input: &VdbFile) -> Vec<usize> {
     if let Some(damage) = input.damage() {
-        eprintln!("warning: more grids of {} cannot be read: {damage}", input.name());
+        say(&format!("warning: more grids of {} cannot be read: {damage}", input.name()));
     }
     let mut chosen = Vec::new();
     for (index, summary) in input.grids().iter().enumerate() {
         match &summary.unusable {
-            Some(reason) => eprintln!("skipping grid \"{}\": {reason}", summary.unique_name),
+            Some(reason) => say(&format!("skipping grid \"{}\": {reason}", summary.unique_name)),
             None => chosen.push(index),
         }
     }
@@ -143,10 +144,10 @@ where
 /// Says what became of a grid.
 fn summarise(grid: &WrittenGrid, source: &GridSummary) {
     let name = if grid.unique_name.is_empty() { "(no name)" } else { &grid.unique_name };
-    eprintln!(
+    say(&format!(
         "{name}: {} of {} active voxels, {} bytes",
         grid.active_voxel_count, source.active_voxel_count, grid.byte_count
-    );
+    ));
 }
 
 fn byte_count(path: &Path) -> Result<u64, CliError> {

@@ -1,7 +1,7 @@
 //! Whole numbers as people write them: `1000000`, `1_000_000` or `1e6`.
 
-/// Largest whole number below which floating-point numbers skip none.
-const EXACT_LIMIT: f64 = (1_u64 << 53) as f64;
+/// What no count reaches: 2^64.
+const LIMIT: f64 = 18_446_744_073_709_551_616.0;
 
 /// Parses a whole number of at least 1.
 pub fn parse_count(text: &str) -> Result<u64, String> {
@@ -14,7 +14,7 @@ pub fn parse_count(text: &str) -> Result<u64, String> {
 
 fn parse_exponent(digits: &str) -> Option<u64> {
     let value: f64 = digits.parse().ok()?;
-    ((0.0..=EXACT_LIMIT).contains(&value) && value.fract() == 0.0).then_some(value as u64)
+    ((0.0..LIMIT).contains(&value) && value.fract() == 0.0).then_some(value as u64)
 }
 
 /// Parses a finite number above 0.
@@ -47,6 +47,7 @@ mod tests {
             ("1e6", 1_000_000),
             ("1E6", 1_000_000),
             ("2.5e3", 2_500),
+            ("1e18", 1_000_000_000_000_000_000),
             ("18446744073709551615", u64::MAX),
         ] {
             assert_eq!(parse_count(text), Ok(count), "{text}");
@@ -55,7 +56,7 @@ mod tests {
 
     #[test]
     fn what_is_no_count_is_refused() {
-        for text in ["", "0", "-1", "1.5", "1e-3", "many", "1e300", "inf", "nan", "1 000"] {
+        for text in ["", "0", "-1", "1.5", "1e-3", "many", "2e19", "1e300", "inf", "nan", "1 000"] {
             assert!(parse_count(text).is_err(), "{text}");
         }
     }

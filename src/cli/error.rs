@@ -80,14 +80,24 @@ pub enum CliError {
     Interrupt(#[from] ctrlc::Error),
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
-    #[error("cannot write to stderr: {0}")]
-    Stderr(io::Error),
     #[error("{path} is there already; give another name, or --force to replace it", path = path.display())]
     Exists { path: PathBuf },
+    #[error(
+        "{flag} would be written in place of {other}: both are {path}; give another name",
+        path = path.display()
+    )]
+    TakesPlace { flag: &'static str, other: String, path: PathBuf },
+    #[error("{source}; the image is kept in {kept}", kept = kept.display())]
+    Kept { source: FilmError, kept: PathBuf },
     #[error("give a volume to start from, --from FILE.vdb, or --preset NAME")]
     NothingToStartFrom,
     #[error("grid \"{grid}\" of {path} cannot be used: {reason}", path = path.display())]
     UnusableGrid { grid: String, path: PathBuf, reason: String },
+    #[error(
+        "{path} has no grid of numbers that could be densities; `photonvdb inspect {path}` lists its grids",
+        path = path.display()
+    )]
+    NoDensity { path: PathBuf },
     #[error("{path} cannot be named in a scene: its name is not Unicode", path = path.display())]
     UnwritablePath { path: PathBuf },
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::console::say;
 use super::error::CliError;
 
 /// What shells report of a program ended by SIGINT: 128 + 2.
@@ -16,7 +17,7 @@ pub fn catch() -> Result<Arc<AtomicBool>, CliError> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(ENDED_BY_INTERRUPT);
         }
-        eprintln!("\nending after the pass in flight; press Ctrl-C again to end at once");
+        say("\nending after the pass in flight; press Ctrl-C again to end at once");
     })?;
     Ok(pressed)
 }

@@ -10,6 +10,7 @@ use clap_mangen::roff::{Roff, roman};
 use photonvdb::film::write_beside;
 
 use super::args::Arguments;
+use super::console::say;
 use super::error::CliError;
 use super::print_to_stdout;
 
@@ -45,7 +46,7 @@ pub fn run(arguments: &ManArguments) -> Result<(), CliError> {
         write_beside(&path, |file| io::Write::write_all(file, &page))?;
         count += 1;
     }
-    eprintln!("wrote {count} pages to {}", directory.display());
+    say(&format!("wrote {count} pages to {}", directory.display()));
     Ok(())
 }
 

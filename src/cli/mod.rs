@@ -10,13 +10,17 @@ mod bias;
 mod bytes;
 mod compare;
 mod completions;
+mod console;
 mod convert;
 mod count;
 mod error;
+mod file_names;
+mod image_files;
 mod inspect;
 mod interrupt;
 mod man;
 mod new;
+mod outputs;
 mod presets;
 mod progress;
 mod reference;
@@ -35,15 +39,16 @@ mod validate;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use serde::Serialize;
 
 use args::{Arguments, Command};
+use console::say;
 use error::CliError;
 
 /// Runs the command typed.
 pub fn run() -> ExitCode {
-    let finished = match Arguments::parse().command {
+    let finished = match parsed().command {
         Command::New(arguments) => new::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Bake(arguments) => bake::run(&arguments),
@@ -62,10 +67,22 @@ pub fn run() -> ExitCode {
     match finished {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            say(&format!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// What was typed. A negative number is taken as the value of the flag before it, so that its parser says what is wanted.
+fn parsed() -> Arguments {
+    let command = Arguments::command().mut_subcommands(|command| {
+        command.mut_args(|argument| {
+            let takes_text = argument.get_action().takes_values();
+            argument.allow_negative_numbers(takes_text)
+        })
+    });
+    let parsed = Arguments::from_arg_matches(&command.get_matches());
+    parsed.unwrap_or_else(|error| error.exit())
 }
 
 /// A pool of so many threads; without a number one a core, or what RAYON_NUM_THREADS says.

@@ -1,4 +1,4 @@
-//! Progress bars: one a stage on a terminal, nothing where stderr is piped or quiet is asked for.
+//! Progress bars, one a stage, and pictures in between: on a terminal; bars not where quiet is asked for.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -6,7 +6,11 @@ use std::sync::{PoisonError, RwLock};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use photonvdb::files::WriteFailure;
+use photonvdb::film::Film;
 use photonvdb::render::{ErrorEstimate, Observer, RenderOptions, Stage};
+
+use super::console::say;
+use super::terminal_picture::TerminalPicture;
 
 /// Shows the stages of a render and passes Ctrl-C on to it.
 pub struct Progress {
@@ -17,6 +21,8 @@ pub struct Progress {
     error: RwLock<Option<ErrorEstimate>>,
     quiet: bool,
     interrupted: Arc<AtomicBool>,
+    /// Shown after passes.
+    picture: Option<TerminalPicture>,
 }
 
 impl Progress {
@@ -29,7 +35,17 @@ impl Progress {
     ) -> Self {
         let bar = RwLock::new(ProgressBar::hidden());
         let (pass, passes) = (AtomicU32::new(passes_done + 1), options.passes);
-        Self { bar, pass, passes, error: RwLock::new(None), quiet, interrupted }
+        Self { bar, pass, passes, error: RwLock::new(None), quiet, interrupted, picture: None }
+    }
+
+    /// The same with pictures in the terminal, if they are asked for.
+    pub fn with_pictures(self, are_asked_for: bool) -> Self {
+        Self { picture: are_asked_for.then(TerminalPicture::default), ..self }
+    }
+
+    /// Shows the picture that is done.
+    pub fn show_finished(&self, film: &Film) {
+        self.picture.iter().for_each(|picture| picture.show(film));
     }
 
     fn start_bar(&self, stage: Stage, total: u64) -> ProgressBar {
@@ -77,9 +93,13 @@ impl Observer for Progress {
         *self.error.write().unwrap_or_else(PoisonError::into_inner) = error;
     }
 
+    fn image(&self, film: &Film) {
+        self.picture.iter().for_each(|picture| picture.show_unfinished(film));
+    }
+
     fn checkpoint_failed(&self, failure: &WriteFailure) {
         // What was asked for did not happen: that is said even where quiet is asked for.
-        eprintln!("warning: the pass is not kept: {failure}");
+        say(&format!("warning: the pass is not kept: {failure}"));
     }
 
     fn cancelled(&self) -> bool {

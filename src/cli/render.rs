@@ -3,23 +3,22 @@
 use std::path::Path;
 use std::time::Instant;
 
-use photonvdb::film::{
-    FilmError, RgbImage, check_writable, compare, read_rgb, write_exr, write_preview_png,
-};
+use photonvdb::film::{FilmError, RgbImage, compare, read_rgb};
 use photonvdb::render::{
-    Checkpoints, Observer, RenderOptions, RenderState, Rendering, photons_per_pass, render_from,
+    Checkpoints, Observer, RenderOptions, RenderState, photons_per_pass, render_from,
 };
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
 use super::error::CliError;
+use super::image_files::write_images;
 use super::interrupt;
+use super::outputs;
 use super::progress::Progress;
-use super::report::{CalibrationFigures, Comparison, Report, Seconds, is_stdout};
+use super::report::{CalibrationFigures, Comparison, Report, Seconds};
 use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 use super::summary::Summary;
-use super::terminal_picture;
 use super::text_file::write_json;
 use super::thread_pool;
 
@@ -36,6 +35,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let plan = Plan { photons: photons_per_pass(&scene, &options), ..Plan::of(&scene) };
     let interrupted = interrupt::catch()?;
     summary.plan(&scene, &plan);
+    summary.idle_flags(&arguments.idle_flags(&scene, &options));
     let load = started.elapsed().as_secs_f64();
 
     let pool = thread_pool(arguments.threads)?;
@@ -45,7 +45,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     if resumed.is_some() {
         summary.resumed(passes_before, seconds_before);
     }
-    let progress = Progress::new(&options, passes_before, arguments.quiet, interrupted);
+    let progress = Progress::new(&options, passes_before, arguments.quiet, interrupted)
+        .with_pictures(arguments.show);
     let save_to = arguments.checkpoint.as_deref();
     let checkpoints = Checkpoints { resume_from: resumed, save_to };
     let rendering = pool.install(|| render_from(&scene, &options, &progress, checkpoints))?;
@@ -55,7 +56,11 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         summary.interrupted(made.passes_done);
     }
     let write_started = Instant::now();
-    pool.install(|| write_images(arguments, &scene, &settings, &rendering))?;
+    let metadata = settings.metadata(&scene, made.emitted_count, made.passes_done);
+    let files = [Some(arguments.output.as_path()), arguments.preview.as_deref()];
+    let (film, options) = (&rendering.film, arguments.exr_options());
+    // What else was asked for is written all the same.
+    let written = pool.install(|| write_images(files, film, &options, &metadata));
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         plan,
@@ -84,31 +89,29 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         let error = compare(&RgbImage::from(&rendering.film), &reference)?;
         report.comparison = Some(Comparison::new(path, error));
     }
-    if arguments.show {
-        terminal_picture::show(&rendering.film).map_err(CliError::Stderr)?;
-    }
+    progress.show_finished(&rendering.film);
     report.seconds.total = seconds_before + started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.report {
         write_json(path, &report)?;
     }
     summary.times(&report.seconds, &report.photons);
     report.calibration.iter().for_each(|calibration| summary.calibration(calibration));
-    summary.truncated(&report.power, scene.photons.max_order);
+    summary.power(&report.power, scene.photons.max_order);
     summary.error(made);
     report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
+    written?;
     summary.written(arguments);
     Ok(())
 }
 
-fn check_outputs(arguments: &RenderArguments) -> Result<(), FilmError> {
-    let report = arguments.report.as_deref().filter(|path| !is_stdout(path));
+fn check_outputs(arguments: &RenderArguments) -> Result<(), CliError> {
     let files = [
-        Some(arguments.output.as_path()),
-        arguments.preview.as_deref(),
-        arguments.checkpoint.as_deref(),
-        report,
+        ("--output", Some(arguments.output.as_path())),
+        ("--preview", arguments.preview.as_deref()),
+        ("--checkpoint", arguments.checkpoint.as_deref()),
+        ("--report", arguments.report.as_deref()),
     ];
-    files.into_iter().flatten().try_for_each(check_writable)
+    outputs::check(&files, &arguments.scene, &[("--reference", arguments.reference.as_deref())])
 }
 
 fn load_scene(arguments: &RenderArguments) -> Result<Scene, CliError> {
@@ -136,19 +139,4 @@ fn load_reference<'a>(
         return Err(FilmError::SizeMismatch { image, reference }.into());
     }
     Ok(Some((path, reference)))
-}
-
-fn write_images(
-    arguments: &RenderArguments,
-    scene: &Scene,
-    settings: &Settings,
-    rendering: &Rendering,
-) -> Result<(), FilmError> {
-    let made = &rendering.report;
-    let metadata = settings.metadata(scene, made.emitted_count, made.passes_done);
-    write_exr(&arguments.output, &rendering.film, &arguments.exr_options(), &metadata)?;
-    match &arguments.preview {
-        Some(path) => write_preview_png(path, &rendering.film, None),
-        None => Ok(()),
-    }
 }

@@ -4,6 +4,7 @@ use photonvdb::render::RenderReport;
 use photonvdb::scene::{Plan, Scene};
 
 use super::args::RenderArguments;
+use super::console::say;
 use super::report::{CalibrationFigures, Comparison, PhotonCounts, Power, Seconds, is_stdout};
 
 /// Speaks unless told to be quiet.
@@ -19,6 +20,13 @@ impl Summary {
             self.line(&format!("warning: {warning}"));
         }
         self.line(&plan.to_string());
+    }
+
+    /// Flags that change nothing, and what they are for.
+    pub fn idle_flags(self, flags: &[(&str, &str)]) {
+        for (flag, purpose) in flags {
+            self.line(&format!("warning: {flag} changes nothing here: it is for {purpose}"));
+        }
     }
 
     /// What a checkpoint holds.
@@ -59,12 +67,13 @@ impl Summary {
             "{total:.2} s: load {load:.2}, trace {trace:.2}, build {build:.2}, {calibrate}gather {gather:.2}, write {write:.2}"
         ));
         let speed = photons.emitted as f64 / trace.max(f64::MIN_POSITIVE);
-        self.line(&format!(
-            "{} photons emitted, {} stored, {} emitted a second",
-            photons.emitted,
-            photons.stored,
-            rounded(speed)
-        ));
+        // A lattice stores none, and has no need to say so.
+        let stored = match photons.stored {
+            0 => String::new(),
+            stored => format!(", {stored} stored"),
+        };
+        let emitted = photons.emitted;
+        self.line(&format!("{emitted} photons emitted{stored}, {} a second", rounded(speed)));
     }
 
     /// What the divisor was measured to be.
@@ -75,9 +84,14 @@ impl Summary {
         ));
     }
 
-    /// That photons were cut off at the last order followed, if it shows.
-    pub fn truncated(self, power: &Power, max_order: u32) {
+    /// That no light was sent, or that photons were cut off at the last order followed, if it shows.
+    pub fn power(self, power: &Power, max_order: u32) {
         let sum = |rgb: [f64; 3]| rgb.iter().sum::<f64>();
+        if sum(power.emitted) == 0.0 {
+            self.line(
+                "warning: no light falls on the medium: every light is dark or shines past it",
+            );
+        }
         let share = sum(power.truncated) / sum(power.emitted);
         if share > 1e-3 {
             let percent = 100.0 * share;
@@ -110,7 +124,7 @@ impl Summary {
 
     fn line(self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     }
 }

@@ -3,10 +3,14 @@
 
 use std::env;
 use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use photonvdb::film::{Film, Pixel, tone_mapped};
 use photonvdb::math::Rgb;
+
+use super::console::columns;
 
 /// Largest picture \[pixels\].
 const MAX_SIZE: [usize; 2] = [120, 96];
@@ -17,24 +21,44 @@ const COLUMNS: usize = 80;
 /// Levels of a channel in the colour cube of xterm.
 const CUBE_LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
 
-/// Draws a film on stderr, tone-mapped as a preview is.
-pub fn show(film: &Film) -> io::Result<()> {
-    let columns = columns().unwrap_or(COLUMNS);
-    let is_direct =
-        env::var("COLORTERM").is_ok_and(|value| value == "truecolor" || value == "24bit");
-    let picture = draw(&shrunk(film, columns), if is_direct { direct } else { indexed });
-    io::stderr().lock().write_all(picture.as_bytes())
+/// How often a picture that is not yet done is drawn.
+const INTERVAL: Duration = Duration::from_secs(2);
+
+/// The picture of one render, each in place of the one before.
+#[derive(Default)]
+pub struct TerminalPicture {
+    /// When the last was drawn, and how many lines it took.
+    last: Mutex<Option<(Instant, usize)>>,
 }
 
-/// Width of the terminal, if stderr is one that tells.
-fn columns() -> Option<usize> {
-    #[cfg(unix)]
-    {
-        let size = rustix::termios::tcgetwinsize(io::stderr()).ok()?;
-        (size.ws_col > 0).then_some(usize::from(size.ws_col))
+impl TerminalPicture {
+    /// Draws a film that goes on to change, on a terminal, and not too often.
+    pub fn show_unfinished(&self, film: &Film) {
+        let last = *self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = last.is_none_or(|(drawn, _)| drawn.elapsed() >= INTERVAL);
+        if is_due && io::stderr().is_terminal() {
+            self.show(film);
+        }
     }
-    #[cfg(not(unix))]
-    None
+
+    /// Draws a film on stderr, tone-mapped as a preview is.
+    pub fn show(&self, film: &Film) {
+        let columns = columns().unwrap_or(COLUMNS);
+        let is_direct =
+            env::var("COLORTERM").is_ok_and(|value| value == "truecolor" || value == "24bit");
+        let picture = draw(&shrunk(film, columns), if is_direct { direct } else { indexed });
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let picture = over(last.map(|(_, lines)| lines), &picture);
+        // A stderr that is gone ends no render.
+        let _ = io::stderr().lock().write_all(picture.as_bytes());
+        *last = Some((Instant::now(), picture.lines().count()));
+    }
+}
+
+/// A picture in place of one of so many lines, which end above the cursor.
+fn over(lines_before: Option<usize>, picture: &str) -> String {
+    let up = lines_before.map_or_else(String::new, |lines| format!("\x1b[{lines}A"));
+    up + picture
 }
 
 /// Lines of upper half blocks: the upper pixel in front, the lower one behind.
@@ -122,6 +146,12 @@ mod tests {
         ] {
             assert_eq!(indexed(color), index);
         }
+    }
+
+    #[test]
+    fn pictures_take_each_others_place() {
+        assert_eq!(over(None, "a\nb\n"), "a\nb\n");
+        assert_eq!(over(Some(2), "a\nb\n"), "\x1b[2Aa\nb\n");
     }
 
     #[test]

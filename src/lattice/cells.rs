@@ -19,9 +19,9 @@ pub struct Cells<L> {
 const SHARE: usize = 1 << 14;
 
 impl<L: CellSum> Cells<L> {
-    /// The sum of deposits of equal shape.
+    /// The sum of deposits of equal shape, whose power was scaled by [`LatticeShape::power_scale`].
     pub fn from_sums(shape: &LatticeShape, mut sums: Vec<Vec<L>>) -> Self {
-        let factor = (1.0 / shape.cell_volume()) as f32;
+        let factor = (1.0 / (shape.cell_volume() * shape.power_scale())) as f32;
         let mut light = sums.pop().unwrap_or_else(|| vec![L::default(); shape.cell_count()]);
         light.par_chunks_mut(SHARE).enumerate().for_each(|(share, cells)| {
             let first = share * SHARE;

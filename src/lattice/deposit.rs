@@ -11,7 +11,7 @@ pub trait Deposit: Keep {
     /// What a cell holds.
     type Cell: CellSum;
 
-    /// What was added to each cell, x fastest.
+    /// What was added to each cell, x fastest, its power scaled by [`LatticeShape::power_scale`].
     fn into_sums(self) -> Vec<Self::Cell>;
 }
 
@@ -22,7 +22,7 @@ pub struct CameraDeposit<'a, E, L> {
     phase: Phase,
     /// Where light is wanted \[m\].
     camera: DVec3,
-    /// Power times length a cell \[W m\], times the phase function \[1/sr\].
+    /// Scaled power times length a cell \[W/m^2\], times the phase function \[1/sr\].
     sums: Vec<L>,
 }
 
@@ -47,6 +47,7 @@ impl<E: Extinction, L: CellLight> Keep for CameraDeposit<'_, E, L> {
 
     fn flight(&mut self, ray: &Ray, flight: Span, power: Rgb, _order: u32) {
         let Self { shape, extinction, phase, camera, sums } = self;
+        let power = power * shape.power_scale();
         if phase.is_isotropic() && !E::IS_CHROMATIC {
             let light = L::from_rgb(power * phase.density(1.0));
             walk_cells(shape, ray, flight, |cell, enters, leaves| {
@@ -88,7 +89,7 @@ fn weighted_length(shape: &LatticeShape, ray: &Ray, enters: f64, leaves: f64) ->
 pub struct DirectedDeposit<'a, E, L> {
     shape: &'a LatticeShape,
     extinction: &'a E,
-    /// Power times length a cell \[W m\].
+    /// Scaled power times length a cell \[W/m^2\].
     sums: Vec<DirectedLight<L>>,
 }
 
@@ -113,6 +114,7 @@ impl<E: Extinction, L: CellLight> Keep for DirectedDeposit<'_, E, L> {
 
     fn flight(&mut self, ray: &Ray, flight: Span, power: Rgb, _order: u32) {
         let Self { shape, extinction, sums } = self;
+        let power = power * shape.power_scale();
         let light = DirectedLight::along(ray.direction, L::from_rgb(power));
         walk_cells(shape, ray, flight, |cell, enters, leaves| {
             let length = weighted_length(shape, ray, enters, leaves) as f32;

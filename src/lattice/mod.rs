@@ -107,7 +107,7 @@ mod tests {
             DVec3::new(-1.0, 0.0, 0.5) + DVec3::from_array(cell) * size
         };
         let sums: Vec<f32> = (0..shape.cell_count())
-            .map(|i| (value(middle(i)) * shape.cell_volume()) as f32)
+            .map(|i| (value(middle(i)) * shape.cell_volume() * shape.power_scale()) as f32)
             .collect();
         // Two deposits of half the light each.
         let halves = vec![sums.iter().map(|s| 0.5 * s).collect::<Vec<f32>>(); 2];
@@ -160,10 +160,10 @@ mod tests {
             (0..shape.cell_count()).map(|i| f64::from(share(i)) * shape.cell_volume()).sum();
         let exact = 4.0 / 3.0 * std::f64::consts::PI * 8.0;
         assert!((volume / exact - 1.0).abs() < 2e-3, "{volume} {exact}");
+        let full = (shape.cell_volume() * shape.power_scale()) as f32;
         // An even fluence of 3 leaves power times length in proportion to what is filled.
-        let sums: Vec<Vec3A> = (0..shape.cell_count())
-            .map(|i| Vec3A::new(3.0, 1.0, 0.0) * share(i) * shape.cell_volume() as f32)
-            .collect();
+        let sums: Vec<Vec3A> =
+            (0..shape.cell_count()).map(|i| Vec3A::new(3.0, 1.0, 0.0) * share(i) * full).collect();
         let cells = Cells::from_sums(&shape, vec![sums]);
         let lattice = LightLattice::Colored([cells.coarser(), cells]);
         for direction in [DVec3::X, DVec3::NEG_Y, DVec3::ONE.normalize()] {

@@ -11,6 +11,9 @@ pub struct LatticeShape {
     to_cells: DAffine3,
     counts: [usize; 3],
     cell_volume: f64,
+    /// What power is multiplied with before it is added to cells: about the inverse of their volume, so that sums in 32 bits
+    /// have room in media of any size, and a power of two, so that nothing is rounded.
+    power_scale: f64,
     cell_edge: f64,
     /// The ball that the medium fills, in cells, if it does not fill the lattice.
     ball: Option<(DVec3, f64)>,
@@ -46,8 +49,9 @@ impl LatticeShape {
             (to_cells.transform_point3(center), radius * counts[0] as f64 / lengths[0])
         });
         let cell_volume = cell.determinant().abs();
+        let power_scale = (-cell_volume.log2().round()).exp2();
         let cell_edge = longest / resolution as f64;
-        Some(Self { to_cells, counts, cell_volume, cell_edge, ball, lamps: None })
+        Some(Self { to_cells, counts, cell_volume, power_scale, cell_edge, ball, lamps: None })
     }
 
     /// The same, its cells freed from the peaks of these lamps.
@@ -68,6 +72,7 @@ impl LatticeShape {
             to_cells: DAffine3::from_scale(DVec3::splat(0.5)) * self.to_cells,
             counts: self.counts.map(|count| count / 2),
             cell_volume: 8.0 * self.cell_volume,
+            power_scale: 0.125 * self.power_scale,
             cell_edge: 2.0 * self.cell_edge,
             ball: self.ball.map(|(center, radius)| (0.5 * center, 0.5 * radius)),
             lamps: self.lamps.clone(),
@@ -87,6 +92,11 @@ impl LatticeShape {
     /// Volume of a cell \[m^3\].
     pub fn cell_volume(&self) -> f64 {
         self.cell_volume
+    }
+
+    /// What power is multiplied with before it is added to cells \[m^-3\].
+    pub fn power_scale(&self) -> f64 {
+        self.power_scale
     }
 
     /// Length of a cell's edge along the longest side \[m\].

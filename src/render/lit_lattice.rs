@@ -11,7 +11,7 @@ use crate::lattice::{
 use crate::light::LightChoice;
 use crate::medium::{Extinction, Phase};
 use crate::render::lit_medium::{scene_emission, trace_settings};
-use crate::render::{Observer, RenderError, RenderReport, Stage};
+use crate::render::{Observer, RenderError, RenderReport, Stage, memory};
 use crate::scene::Scene;
 use crate::trace::trace_into;
 
@@ -58,7 +58,7 @@ pub enum ReadFrom {
 /// Traces the photons of one pass, of the chosen lights, into a lattice. Adds to `report`.
 ///
 /// # Errors
-/// An infinite medium.
+/// An infinite medium, or no room for the cells.
 pub fn trace<E: Extinction>(
     scene: &Scene,
     extinction: &E,
@@ -77,13 +77,13 @@ pub fn trace<E: Extinction>(
     let is_directed = from == ReadFrom::Anywhere && !scene.medium.phase.is_isotropic();
     let phase = if from == ReadFrom::Fluence { Phase::Isotropic } else { scene.medium.phase };
     Ok(match (is_grey, is_directed) {
-        (true, false) => LightLattice::Grey(fill.towards_camera::<f32>(phase)),
-        (false, false) => LightLattice::Colored(fill.towards_camera::<Vec3A>(phase)),
+        (true, false) => LightLattice::Grey(fill.towards_camera::<f32>(phase)?),
+        (false, false) => LightLattice::Colored(fill.towards_camera::<Vec3A>(phase)?),
         (true, true) => LightLattice::DirectedGrey(
-            fill.levels(|| DirectedDeposit::<E, f32>::new(&shape, extinction)),
+            fill.levels(|| DirectedDeposit::<E, f32>::new(&shape, extinction))?,
         ),
         (false, true) => LightLattice::DirectedColored(
-            fill.levels(|| DirectedDeposit::<E, Vec3A>::new(&shape, extinction)),
+            fill.levels(|| DirectedDeposit::<E, Vec3A>::new(&shape, extinction))?,
         ),
     })
 }
@@ -99,18 +99,22 @@ struct Fill<'a, E> {
 }
 
 impl<E: Extinction> Fill<'_, E> {
-    fn towards_camera<L: CellLight>(&mut self, phase: Phase) -> [Cells<L>; 2] {
+    fn towards_camera<L: CellLight>(&mut self, phase: Phase) -> Result<[Cells<L>; 2], RenderError> {
         let (shape, extinction) = (self.shape, self.extinction);
         let camera = self.scene.camera.position();
         self.levels(|| CameraDeposit::<E, L>::new(shape, extinction, phase, camera))
     }
 
-    fn levels<D: Deposit>(&mut self, deposit: impl Fn() -> D) -> [Cells<D::Cell>; 2] {
+    fn levels<D: Deposit>(
+        &mut self,
+        deposit: impl Fn() -> D,
+    ) -> Result<[Cells<D::Cell>; 2], RenderError> {
         let Self { scene, extinction, emission, shape, observer, report } = self;
         let started = Instant::now();
         let medium = &scene.medium;
-        observer.stage_started(Stage::Trace, emission.chosen_count());
         let tasks = (emission.chosen_count() / PHOTONS_A_TASK).clamp(1, MAX_TASKS);
+        check_memory::<D::Cell>(shape.cell_count(), tasks)?;
+        observer.stage_started(Stage::Trace, emission.chosen_count());
         let deposits = (0..tasks).map(|_| deposit()).collect();
         let settings = trace_settings(scene);
         let advanced = |steps| observer.advanced(steps);
@@ -126,8 +130,15 @@ impl<E: Extinction> Fill<'_, E> {
         let fine = Cells::from_sums(shape, sums);
         let coarse = fine.coarser();
         report.seconds.build += started.elapsed().as_secs_f64();
-        [fine.sharpened(), coarse.sharpened()]
+        Ok([fine.sharpened(), coarse.sharpened()])
     }
+}
+
+/// Refuses cells that memory has no room for: of every task, sharpened, and those twice as long.
+fn check_memory<L>(cells: usize, tasks: u64) -> Result<(), RenderError> {
+    let bytes = (tasks + 2) * (cells * size_of::<L>()) as u64;
+    let what = || format!("a lattice of {cells} cells");
+    memory::check(bytes, what, "take fewer (--lattice), or a larger --target-error")
 }
 
 /// The finest lattice: 150 million cells.

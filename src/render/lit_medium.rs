@@ -11,12 +11,15 @@ use crate::math::square_maps::square_to_sphere;
 use crate::math::{Ball, DVec2, Ray, Rgb, mean_channel};
 use crate::medium::{Bounds, Extinction};
 use crate::render::calibration::Calibrator;
-use crate::render::{Observer, Reader, RenderError, RenderReport, Stage};
+use crate::render::{Observer, Reader, RenderError, RenderReport, Stage, memory};
 use crate::scene::Scene;
 use crate::trace::{MapFrame, TraceSettings, trace_photons};
 
 /// Most photons that one pass may store: they take 15 GB while the map is built.
 const MAX_STORED: usize = 1 << 27;
+
+/// What a stored photon takes while the map is built \[bytes\].
+const BYTES_A_PHOTON: u64 = 112;
 
 /// The largest radius of a query, as a share of the medium's, where the scene does not say.
 const MAX_RADIUS_SHARE: f64 = 0.25;
@@ -62,7 +65,8 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         let settings = EmissionSettings { kind, count, photons_per_ray: 1, seed };
         let mut emission = scene_emission(scene, extinction, settings);
         emission.choose(choice);
-        let settings = trace_settings(scene);
+        let limit = most_stored();
+        let settings = TraceSettings { max_stored: limit, ..trace_settings(scene) };
         let lit_from = scene.lights.iter().find_map(|light| light.position());
         let frame = MapFrame::of(medium, lit_from);
         observer.stage_started(Stage::Trace, emission.chosen_count());
@@ -73,7 +77,7 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         report.seconds.trace += started.elapsed().as_secs_f64();
         if traced.overflow {
             let emitted = scene.photons.count;
-            return Err(RenderError::TooManyPhotons { emitted, limit: MAX_STORED });
+            return Err(RenderError::TooManyPhotons { emitted, limit });
         }
 
         let started = Instant::now();
@@ -165,6 +169,11 @@ pub(super) fn scene_emission<'a, E: Extinction>(
     };
     let mean_free_path = mean_free_path(extinction, &medium.bounds);
     Emission::with_settings(&scene.lights, medium, opacity, mean_free_path, settings)
+}
+
+/// Most photons that there is room for.
+fn most_stored() -> usize {
+    memory::free_bytes().map_or(MAX_STORED, |free| MAX_STORED.min((free / BYTES_A_PHOTON) as usize))
 }
 
 /// What is kept of their paths.

@@ -14,6 +14,7 @@ mod light_groups;
 mod lit_lattice;
 mod lit_medium;
 mod lit_scene;
+mod memory;
 mod observer;
 mod owned_lit_scene;
 mod passes;
@@ -125,13 +126,25 @@ pub enum RenderError {
     NoLattice,
     /// More photons than memory allows.
     #[error(
-        "a pass of {emitted} photons stores more than {limit}; use fewer photons a pass and more --passes"
+        "a pass of {emitted} photons stores more than the {limit} that memory has room for; use fewer photons a pass and more --passes"
     )]
     TooManyPhotons {
         /// Photons emitted per pass.
         emitted: u64,
         /// Most that are stored.
         limit: usize,
+    },
+    /// An image or a lattice that memory has no room for.
+    #[error("{what} takes {needed_mib} MiB of memory and {free_mib} MiB are free; {way_out}")]
+    OutOfMemory {
+        /// What does not fit.
+        what: String,
+        /// What it takes \[MiB\].
+        needed_mib: u64,
+        /// What is free \[MiB\].
+        free_mib: u64,
+        /// What to do.
+        way_out: &'static str,
     },
     /// More voxels than memory allows.
     #[error(
@@ -192,6 +205,8 @@ pub fn render_from(
     if scene.render.gather != Gather::Knn && scene.medium.shared_phase().is_none() {
         return Err(RenderError::NoLattice);
     }
+    let lights = if options.layers.lights { scene.lights.len() } else { 0 };
+    memory::check_image(scene.camera.width * scene.camera.height, lights)?;
     match &scene.medium.extinction {
         MediumExtinction::Uniform(uniform) => {
             Passes::new(scene, uniform, options, observer, checkpoints).run()

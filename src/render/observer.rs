@@ -1,6 +1,7 @@
 //! How a render tells of its progress, and how it is asked to stop.
 
 use crate::files::WriteFailure;
+use crate::film::Film;
 use crate::render::ErrorEstimate;
 
 /// A stage of one pass.
@@ -27,6 +28,9 @@ pub trait Observer: Sync {
 
     /// A pass is complete: the mean of `passes` has that error.
     fn pass_finished(&self, _passes: u32, _error: Option<ErrorEstimate>) {}
+
+    /// The mean of the passes so far, as it is: not filtered.
+    fn image(&self, _film: &Film) {}
 
     /// The checkpoint of a pass could not be written; the render goes on.
     fn checkpoint_failed(&self, _failure: &WriteFailure) {}

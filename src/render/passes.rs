@@ -169,6 +169,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
             self.state.seconds = self.seconds();
             let report = &self.state.report;
             self.observer.pass_finished(report.passes_done, report.error);
+            self.observer.image(&self.state.film);
             self.save();
         }
         Ok(self.finish())

@@ -26,7 +26,7 @@ pub enum SceneError {
         limit_mib: u64,
     },
     /// Neither TOML nor JSON by its name.
-    #[error("{}: the name of a scene file ends in .toml or .json", .file.display())]
+    #[error("{}: the name of a scene file ends in .toml or .json{}", .file.display(), volume_note(.file))]
     Extension {
         /// The scene file.
         file: PathBuf,
@@ -53,6 +53,14 @@ pub enum SceneError {
         /// What is wrong, and what to do.
         problem: String,
     },
+}
+
+/// What to do with a volume that was given for a scene.
+fn volume_note(file: &Path) -> String {
+    let is_volume = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vdb"));
+    let name = file.display();
+    let note = || format!("; make one around this volume: photonvdb new SCENE.toml --from {name}");
+    if is_volume { note() } else { String::new() }
 }
 
 fn line_suffix(origin: Origin) -> String {

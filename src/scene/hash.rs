@@ -41,6 +41,12 @@ pub(super) fn scene_hash(
 }
 
 impl SceneFile {
+    /// The files that the scene names, relative to `directory`, each with the path of its key (`medium.file`).
+    pub fn files(&self, directory: &Path) -> Vec<(String, PathBuf)> {
+        let mut file = self.clone();
+        file.named_files().map(|(key, path)| (key, directory.join(path))).collect()
+    }
+
     /// The files that the scene names, each with the path of its key.
     fn named_files(&mut self) -> impl Iterator<Item = (String, &mut PathBuf)> {
         let is_one = self.media.len() == 1;

@@ -59,6 +59,20 @@ impl Preset {
         channels.iter().map(number).fold(0.0, f64::max)
     }
 
+    /// Mean cosine of the angle by which it scatters.
+    pub fn mean_cosine(&self) -> f64 {
+        let value_of = |entries: Vec<(String, Node)>, name: &str| {
+            entries.into_iter().find(|(key, _)| key == name).map(|(_, node)| node.value)
+        };
+        match value_of(self.entries(), "phase") {
+            Some(Value::Table(phase)) => match value_of(phase, "g") {
+                Some(Value::Float(g)) => g,
+                _ => 0.0,
+            },
+            _ => 0.0,
+        }
+    }
+
     fn entries(&self) -> Vec<(String, Node)> {
         match tree::parse_toml(self.text).map(|node| node.value) {
             Some(Value::Table(entries)) => entries,

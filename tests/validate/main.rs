@@ -6,6 +6,7 @@ mod cli_run;
 mod command;
 mod constant_grid;
 mod convergence;
+mod emission_samplers;
 mod hard_cases;
 mod quick;
 mod samplers;

@@ -7,8 +7,9 @@ use clap::builder::PossibleValuesParser;
 use photonvdb::render::BakeOptions;
 use photonvdb::scene::Overrides;
 
-use crate::cli::args::{VolumeArguments, parse_passes, parse_vdb_name};
+use crate::cli::args::{SceneVolumeArguments, parse_passes};
 use crate::cli::count::parse_count;
+use crate::cli::file_names::vdb_name;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,7 +37,7 @@ pub struct BakeArguments {
     pub scene: PathBuf,
 
     /// OpenVDB file to write: grids density, fluence and emission
-    #[arg(short, long, value_name = "LIT.vdb", value_parser = parse_vdb_name)]
+    #[arg(short, long, value_name = "LIT.vdb", value_parser = vdb_name())]
     pub output: PathBuf,
 
     /// Photons emitted per pass [default: photons.count of the scene]
@@ -86,15 +87,7 @@ pub struct BakeArguments {
 
     /// Reading volumes
     #[command(flatten)]
-    pub volume: VolumeArguments,
-
-    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
-    #[arg(long)]
-    pub strict: bool,
-
-    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
-    #[arg(long)]
-    pub sdf_to_fog: bool,
+    pub volume: SceneVolumeArguments,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -111,10 +104,7 @@ impl BakeArguments {
             k: self.k,
             gather: self.gather.clone(),
             lattice: self.lattice,
-            sdf_to_fog: self.sdf_to_fog.then_some(true),
-            max_volume_memory: self.volume.max_volume_memory,
-            strict: self.strict,
-            ..Overrides::default()
+            ..self.volume.overrides()
         }
     }
 
@@ -124,7 +114,7 @@ impl BakeArguments {
             passes: self.passes,
             light_samples: self.light_samples as usize,
             medium: self.medium as usize,
-            limits: self.volume.limits(),
+            limits: self.volume.memory.limits(),
         }
     }
 }

@@ -4,7 +4,6 @@ pub mod args;
 
 use std::collections::BTreeMap;
 
-use photonvdb::files::check_writable;
 use photonvdb::math::{Rgb, mean_channel};
 use photonvdb::medium::vdb::{
     GridClass, GridToWrite, MetadataValue, SparseGrid, WriteOptions, WrittenGrid, write_vdb,
@@ -15,8 +14,10 @@ use photonvdb::render::{
 };
 use photonvdb::scene::Scene;
 
+use super::console::say;
 use super::error::CliError;
 use super::interrupt;
+use super::outputs;
 use super::progress::Progress;
 use super::thread_pool;
 use args::BakeArguments;
@@ -24,18 +25,18 @@ use args::BakeArguments;
 /// Bakes what the arguments ask for.
 pub fn run(arguments: &BakeArguments) -> Result<(), CliError> {
     // What can fail must fail before the work, not after it.
-    check_writable(&arguments.output)?;
+    outputs::check(&[("--output", Some(&arguments.output))], &arguments.scene, &[])?;
     let overrides = arguments.overrides();
     let scene = Scene::load_with(&arguments.scene, &overrides)?;
     let options = arguments.options();
     let number = options.medium;
     let medium = scene.medium.volume(number).ok_or(RenderError::NoSuchMedium { number })?;
-    let say = |text: &str| {
+    let tell = |text: &str| {
         if !arguments.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     };
-    scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    scene.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let pool = thread_pool(arguments.threads)?;
     let load = || Scene::load_densities(&arguments.scene, &overrides, number);
     let densities = match pool.install(load)? {
@@ -47,16 +48,16 @@ pub fn run(arguments: &BakeArguments) -> Result<(), CliError> {
     let baked = pool.install(|| bake(&scene, &densities, &options, &progress))?;
     if progress.cancelled() {
         let done = baked.report.photons.passes_done;
-        say(&format!("interrupted after {done} of {} passes", options.passes));
+        tell(&format!("interrupted after {done} of {} passes", options.passes));
     }
     let grids = Grids { scene: &scene, medium, densities: &densities, baked: &baked };
     let written = pool.install(|| grids.write(arguments))?;
-    say(&summary(&baked.report));
+    tell(&summary(&baked.report));
     let count = |grid: &WrittenGrid| grid.byte_count;
     let bytes: u64 = written.iter().map(count).sum();
     let names: Vec<&str> = written.iter().map(|grid| grid.unique_name.as_str()).collect();
     let path = arguments.output.display();
-    say(&format!("wrote {path}: {}, {bytes} bytes", names.join(", ")));
+    tell(&format!("wrote {path}: {}, {bytes} bytes", names.join(", ")));
     Ok(())
 }
 

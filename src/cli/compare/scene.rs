@@ -9,6 +9,7 @@ use photonvdb::scene::{Overrides, Scene};
 
 use super::args::CompareArguments;
 use super::{chart, emissions, scene_summary};
+use crate::cli::console::say;
 use crate::cli::error::CliError;
 use crate::cli::resources::cpu_seconds;
 use crate::cli::thread_pool;
@@ -50,7 +51,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), CliError> {
         ..Overrides::default()
     };
     let mut scene = Scene::load_with(&path, &overrides)?;
-    scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
     let reference = arguments.reference.as_deref().map(read_rgb).transpose()?;
     let [width, height] = size(arguments, &scene, reference.as_ref());
     (scene.camera.width, scene.camera.height) = (width, height);

@@ -143,7 +143,7 @@ impl Grid {
         let values = &self.values;
         if let (Some(min), Some(max), Some(mean)) = (values.min, values.max, values.mean) {
             let background =
-                self.background.map_or_else(String::new, |b| format!(", background {b}"));
+                self.background.map_or_else(String::new, |b| format!(", background {}", short(b)));
             lines.push(format!("values {min} to {max}, mean {mean}{background}"));
         }
         if values.nonfinite_voxels > 0 {

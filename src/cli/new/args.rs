@@ -1,6 +1,6 @@
 //! What can be typed after `photonvdb new`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use photonvdb::math::DVec3;
@@ -8,6 +8,7 @@ use photonvdb::scene::Preset;
 
 use crate::cli::args::VolumeArguments;
 use crate::cli::count::parse_positive;
+use crate::cli::file_names::toml_name;
 use crate::cli::presets::parse_preset;
 
 const EXAMPLES: &str = "\
@@ -31,7 +32,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub struct NewArguments {
     /// Scene file to write; `-` is stdout
-    #[arg(value_name = "SCENE.toml", value_parser = parse_toml_name)]
+    #[arg(value_name = "SCENE.toml", value_parser = toml_name())]
     pub scene: PathBuf,
 
     /// Volume to make it around
@@ -79,14 +80,5 @@ impl UpAxis {
             Self::Y => DVec3::Y,
             Self::Z => DVec3::Z,
         }
-    }
-}
-
-/// Refuses names that no scene file has.
-fn parse_toml_name(text: &str) -> Result<PathBuf, String> {
-    match Path::new(text).extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("toml") => Ok(text.into()),
-        _ if text == "-" => Ok(text.into()),
-        _ => Err("the scene is written as TOML, its name must end in .toml".into()),
     }
 }

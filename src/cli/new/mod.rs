@@ -11,6 +11,7 @@ use std::path::Path;
 use photonvdb::math::DVec3;
 use photonvdb::scene::Preset;
 
+use super::console::say;
 use super::error::CliError;
 use super::report::is_stdout;
 use super::text_file::write_text;
@@ -26,6 +27,9 @@ const G: f64 = 0.3;
 
 /// Of one that glows: it must absorb, for heat glows as much as it absorbs.
 const GLOWING_ALBEDO: f64 = 0.8;
+
+/// Mean cosine above which few photons fly towards the camera, and those that do count for much.
+const SHARP: f64 = 0.7;
 
 /// Share of the lights beside a medium that glows.
 const DIMMED: f64 = 0.2;
@@ -45,10 +49,10 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     write_text(path, &scene.join())?;
     if !is_stdout(path) {
         let name = path.display();
-        eprintln!(
+        say(&format!(
             "wrote {name}; now: photonvdb render {name} -o {}",
             path.with_extension("exr").display()
-        );
+        ));
     }
     Ok(())
 }
@@ -68,12 +72,13 @@ fn of_preset(arguments: &NewArguments, preset: Preset) -> SceneText {
     let bounds = format!("{{ min = {}, max = {} }}", text::numbers(-half), text::numbers(half));
     medium +=
         &line("bounds", &bounds, &format!("m: optical depth {} from face to face", number(depth)));
-    medium += &preset_values(preset);
+    medium += &preset_values(preset, false);
     SceneText {
         opening: opening(&format!("the preset {}", preset.name), &arguments.scene),
         camera: text::camera(&view),
         medium,
         lights: text::lights(&view, 1.0),
+        gathering: gathering(Some(preset)),
     }
 }
 
@@ -94,13 +99,20 @@ fn around_volume(
         _ => Path::new(""),
     };
     let grid = volume.density();
-    eprintln!(
+    say(&format!(
         "{}: density from grid {:?}, {} active voxels, {} m across",
         file.display(),
         grid.unique_name,
         grid.active_voxel_count,
-        short((high - low).max_element()),
-    );
+        short((high - low).max_element())
+    ));
+
+    if let Some(crop) = volume.worth_cropping() {
+        let file = file.display();
+        say(&format!(
+            "most of its active voxels are empty; without them it renders faster and sharper: photonvdb convert {file} -o small.vdb --crop {crop}"
+        ));
+    }
 
     let mut medium = "[medium]\n".to_owned();
     medium += &line("kind", "\"vdb\"", "");
@@ -116,7 +128,7 @@ fn around_volume(
     );
     medium += &line("density_scale", &short(density_scale), &meaning);
     medium += &match preset {
-        Some(preset) => preset_values(preset),
+        Some(preset) => preset_values(preset, true),
         None => scattering(glow.is_some(), volume.color()),
     };
     medium += &match &glow {
@@ -130,6 +142,7 @@ fn around_volume(
         camera: text::camera(&view),
         medium,
         lights: text::lights(&view, dimmed),
+        gathering: gathering(preset),
     })
 }
 
@@ -215,11 +228,19 @@ fn preset_line(preset: Preset) -> String {
     line("preset", &quoted(preset.name), preset.about())
 }
 
-/// What a preset sets, as comments.
-fn preset_values(preset: Preset) -> String {
+/// What a preset sets, as comments: of a volume all but how dense it is.
+fn preset_values(preset: Preset, is_volume: bool) -> String {
     let mut text = "# It sets, where nothing is said here:\n".to_owned();
-    for setting in preset.settings() {
+    for setting in preset.settings().filter(|line| !(is_volume && line.starts_with("sigma_t"))) {
         text += &format!("#   {setting}\n");
     }
     text
+}
+
+/// How light of a preset is gathered, where the default would be the slower way to a smooth picture.
+fn gathering(preset: Option<Preset>) -> &'static str {
+    match preset {
+        Some(preset) if preset.mean_cosine() > SHARP => text::BOUNCE,
+        _ => "",
+    }
 }

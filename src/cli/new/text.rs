@@ -12,13 +12,15 @@ pub struct SceneText {
     pub camera: String,
     pub medium: String,
     pub lights: String,
+    /// What the scene says of gathering, if anything.
+    pub gathering: &'static str,
 }
 
 impl SceneText {
     /// All of it.
     pub fn join(&self) -> String {
-        let Self { opening, camera, medium, lights } = self;
-        format!("{opening}\n{camera}\n{medium}\n{lights}\n{PHOTONS}")
+        let Self { opening, camera, medium, lights, gathering } = self;
+        format!("{opening}\n{camera}\n{medium}\n{lights}\n{PHOTONS}{gathering}")
     }
 }
 
@@ -26,6 +28,12 @@ impl SceneText {
 const PHOTONS: &str = "\
 [photons]
 # count = 1_000_000             # a pass; where it is left open, --target-error and --time-budget choose
+";
+
+/// The section for a medium whose droplets throw light forward.
+pub const BOUNCE: &str = "
+[render]
+gather = \"bounce\"               # light is thrown forward: paths that bounce are smoother than photons alone
 ";
 
 /// A line of a key with its comment, aligned where the value is short.

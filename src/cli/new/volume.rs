@@ -42,13 +42,18 @@ const RAYS_A_SIDE: usize = 64;
 /// Rays of a smaller share of the greatest depth only graze the medium.
 const GRAZING: f64 = 0.01;
 
+/// The largest number that a scene may hold.
+const LARGEST_SCALE: f64 = 1e30;
+
 /// A volume and how a scene may use it.
 pub struct Volume {
     file: VdbFile,
     limits: Limits,
     density: usize,
     extinction: GridExtinction,
-    /// Its bounds, one voxel beyond the active ones.
+    /// Index space that densities above 0 take, and one voxel beyond.
+    seen: Option<[[f64; 3]; 2]>,
+    /// Bounds of what is seen of it, one voxel beyond densities above 0.
     pub corners: Vec<DVec3>,
     /// Extinction of density 1 while depths are measured, so that no ray is opaque \[1/m\].
     trial_scale: f64,
@@ -85,16 +90,37 @@ impl Volume {
         let Some(Bounds::Parallelepiped(shape)) = extinction.bounds() else {
             return Err(unusable("no density is above 0".into()));
         };
-        let [u, v, w] = shape.edges();
-        let bit = |corner: usize, axis: usize| (corner >> axis & 1) as f64;
-        let corner = |c| shape.corner() + bit(c, 0) * u + bit(c, 1) * v + bit(c, 2) * w;
-        let corners = (0..8).map(corner).collect();
-        Ok(Self { file, limits, density, extinction, corners, trial_scale })
+        let bit = |corner: usize, axis: usize| corner >> axis & 1;
+        let seen = seen_box(&sparse);
+        let corners = match seen {
+            Some(ends) => {
+                let corner = |c| DVec3::from_array([0, 1, 2].map(|axis| ends[bit(c, axis)][axis]));
+                (0..8).map(|c| sparse.index_to_world.transform_point3(corner(c))).collect()
+            }
+            None => {
+                let along = |c: usize, axis: usize| shape.edges()[axis] * bit(c, axis) as f64;
+                let corner = |c| shape.corner() + along(c, 0) + along(c, 1) + along(c, 2);
+                (0..8).map(corner).collect()
+            }
+        };
+        Ok(Self { file, limits, density, extinction, seen, corners, trial_scale })
     }
 
     /// The grid of densities.
     pub fn density(&self) -> &GridSummary {
         &self.file.grids()[self.density]
+    }
+
+    /// The voxels to keep, as `photonvdb convert --crop` takes them, where most of those that are active are empty.
+    pub fn worth_cropping(&self) -> Option<String> {
+        let [low, high] = self.seen?;
+        let active = self.density().active_bbox?;
+        let longest = |edge: &dyn Fn(usize) -> f64| (0..3).map(edge).fold(0.0, f64::max);
+        let seen = longest(&|axis| high[axis] - low[axis]);
+        let all = longest(&|axis| f64::from(active.max[axis]) - f64::from(active.min[axis]));
+        let ends = [low, high].concat();
+        let ends: Vec<String> = ends.iter().map(|end| format!("{end:.0}")).collect();
+        (seen < 0.5 * all).then(|| ends.join(","))
     }
 
     /// Other grids of numbers, as scenes name them.
@@ -127,11 +153,15 @@ impl Volume {
             .filter(|depth| *depth > GRAZING * deepest)
             .fold((0.0, 0_u32), |(sum, count), depth| (sum + depth, count + 1));
         let scale = self.trial_scale * optical_depth * f64::from(count) / sum;
-        let reason = || "no ray of the camera meets it".into();
-        scale.is_finite().then_some(scale).ok_or_else(|| CliError::UnusableGrid {
+        let reason = match scale {
+            _ if !scale.is_finite() => "no ray of the camera meets it",
+            _ if scale > LARGEST_SCALE => "its densities are as good as 0",
+            _ => return Ok(scale),
+        };
+        Err(CliError::UnusableGrid {
             grid: self.density().unique_name.clone(),
             path: self.file.name().into(),
-            reason: reason(),
+            reason: reason.into(),
         })
     }
 
@@ -181,6 +211,37 @@ impl Volume {
     }
 }
 
+/// The box about the densities above 0, one voxel beyond them, in index space: files often hold many active voxels of density 0.
+/// `None` where the background has a density, which fills whatever the active voxels span.
+fn seen_box(grid: &SparseGrid<f32>) -> Option<[[f64; 3]; 2]> {
+    if grid.background > 0.0 {
+        return None;
+    }
+    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let mut include = |low: [f64; 3], high: [f64; 3]| {
+        for axis in 0..3 {
+            ends[0][axis] = ends[0][axis].min(low[axis] - 1.0);
+            ends[1][axis] = ends[1][axis].max(high[axis] + 1.0);
+        }
+    };
+    let leaves = grid.leaves.iter().zip(&grid.masks).zip(grid.values.chunks_exact(512));
+    for ((origin, mask), values) in leaves {
+        for (offset, _) in values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
+            if mask[offset >> 6] >> (offset & 63) & 1 == 1 {
+                let voxel = [offset >> 6, offset >> 3 & 7, offset & 7];
+                let place =
+                    std::array::from_fn(|axis| f64::from(origin[axis]) + voxel[axis] as f64);
+                include(place, place);
+            }
+        }
+    }
+    for tile in grid.tiles.iter().filter(|tile| tile.active && tile.value > 0.0) {
+        let low = tile.origin.map(f64::from);
+        include(low, low.map(|c| c + f64::from(tile.dim) - 1.0));
+    }
+    ends[0].iter().all(|end| end.is_finite()).then_some(ends)
+}
+
 /// A scale at which no way through a grid is deeper than 1 \[1/m per value\].
 fn trial_scale(grid: &DensityGrid, index_to_world: &DAffine3) -> f64 {
     let Some((min, max)) = grid.render_bounds() else { return 1.0 };
@@ -211,7 +272,14 @@ fn choose_density(file: &VdbFile, name: Option<&str>) -> Result<usize, CliError>
     };
     match found {
         Ok(index) => Ok(index),
-        Err(error) => (0..grids.len()).filter(fits).max_by_key(rank).ok_or(error.into()),
+        Err(error) => {
+            let best = (0..grids.len()).filter(fits).max_by_key(rank);
+            let has_numbers = grids.iter().any(GridSummary::is_usable_scalar);
+            best.ok_or_else(|| match has_numbers || grids.is_empty() {
+                true => error.into(),
+                false => CliError::NoDensity { path: file.name().into() },
+            })
+        }
     }
 }
 

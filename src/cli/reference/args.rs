@@ -6,8 +6,9 @@ use clap::{ArgGroup, Args};
 use photonvdb::reference::Limits;
 use photonvdb::scene::Overrides;
 
-use crate::cli::args::{VolumeArguments, parse_exr_name};
+use crate::cli::args::SceneVolumeArguments;
 use crate::cli::count::{parse_count, parse_positive, parse_resolution};
+use crate::cli::file_names::{exr_name, png_name};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,7 +32,7 @@ pub struct ReferenceArguments {
     pub scene: PathBuf,
 
     /// Image to write: linear 32-bit OpenEXR with all layers, variance and sample_count
-    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr_name)]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = exr_name())]
     pub output: PathBuf,
 
     /// Paths a pixel, at least 2
@@ -59,20 +60,12 @@ pub struct ReferenceArguments {
     pub resolution: Option<[u64; 2]>,
 
     /// Tone-mapped picture for a quick look
-    #[arg(long, value_name = "OUT.png")]
+    #[arg(long, value_name = "OUT.png", value_parser = png_name())]
     pub preview: Option<PathBuf>,
 
     /// Reading volumes
     #[command(flatten)]
-    pub volume: VolumeArguments,
-
-    /// Make it an error, not a warning, when a volume has NaN, infinite or negative densities
-    #[arg(long)]
-    pub strict: bool,
-
-    /// Fill a level set with fog: density 0 on its surface, 1 inside [default: medium.sdf_to_fog of the scene]
-    #[arg(long)]
-    pub sdf_to_fog: bool,
+    pub volume: SceneVolumeArguments,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -82,14 +75,7 @@ pub struct ReferenceArguments {
 impl ReferenceArguments {
     /// What replaces values of the scene file.
     pub fn overrides(&self) -> Overrides {
-        Overrides {
-            seed: self.seed,
-            resolution: self.resolution,
-            sdf_to_fog: self.sdf_to_fog.then_some(true),
-            max_volume_memory: self.volume.max_volume_memory,
-            strict: self.strict,
-            ..Overrides::default()
-        }
+        Overrides { seed: self.seed, resolution: self.resolution, ..self.volume.overrides() }
     }
 
     /// When the image is done.

@@ -3,14 +3,15 @@
 pub mod args;
 mod bar;
 
-use photonvdb::film::{
-    ExrOptions, FilmError, RenderMetadata, check_writable, write_exr, write_preview_png,
-};
+use photonvdb::film::{ExrOptions, RenderMetadata};
 use photonvdb::reference::{Reference, render_reference};
 use photonvdb::scene::Scene;
 
+use super::console::say;
 use super::error::CliError;
+use super::image_files::write_images;
 use super::interrupt;
+use super::outputs;
 use super::thread_pool;
 use args::ReferenceArguments;
 use bar::Bar;
@@ -18,28 +19,30 @@ use bar::Bar;
 /// Renders what the arguments ask for.
 pub fn run(arguments: &ReferenceArguments) -> Result<(), CliError> {
     // What can fail must fail before the work, not after it.
-    let outputs = [Some(&arguments.output), arguments.preview.as_ref()];
-    outputs.into_iter().flatten().try_for_each(|path| check_writable(path))?;
+    let files = [Some(arguments.output.as_path()), arguments.preview.as_deref()];
+    outputs::check(&[("--output", files[0]), ("--preview", files[1])], &arguments.scene, &[])?;
     let scene = Scene::load_with(&arguments.scene, &arguments.overrides())?;
-    let say = |text: &str| {
+    let tell = |text: &str| {
         if !arguments.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     };
-    scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    scene.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let pool = thread_pool(arguments.threads)?;
     let bar = Bar::new(arguments.quiet, interrupt::catch()?);
     let reference = pool.install(|| render_reference(&scene, &arguments.limits(), &bar));
     bar.finish();
     let reference = reference?;
     if reference.progress.share_done < 1.0 {
-        say("ended before a limit was reached");
+        tell("ended before a limit was reached");
     }
-    pool.install(|| write_images(arguments, &scene, &reference))?;
-    say(&summary(&reference));
+    let metadata = metadata(arguments, &scene, &reference);
+    let options = ExrOptions { variance: true, ..ExrOptions::default() };
+    pool.install(|| write_images(files, &reference.film, &options, &metadata))?;
+    tell(&summary(&reference));
     let names: Vec<_> =
-        outputs.into_iter().flatten().map(|path| path.display().to_string()).collect();
-    say(&format!("wrote {}", names.join(", ")));
+        files.into_iter().flatten().map(|path| path.display().to_string()).collect();
+    tell(&format!("wrote {}", names.join(", ")));
     Ok(())
 }
 
@@ -50,19 +53,6 @@ fn summary(reference: &Reference) -> String {
         "{} spp, mean {:.6e}, estimated relative error {:.3e}, {:.2} s",
         progress.samples, reference.mean, progress.relative_error, progress.seconds
     )
-}
-
-fn write_images(
-    arguments: &ReferenceArguments,
-    scene: &Scene,
-    reference: &Reference,
-) -> Result<(), FilmError> {
-    let extra = ExrOptions { variance: true, ..ExrOptions::default() };
-    write_exr(&arguments.output, &reference.film, &extra, &metadata(arguments, scene, reference))?;
-    match &arguments.preview {
-        Some(path) => write_preview_png(path, &reference.film, None),
-        None => Ok(()),
-    }
 }
 
 /// What repeats the image. The time it took stays out: equal images are equal files.

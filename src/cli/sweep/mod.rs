@@ -13,6 +13,7 @@ use photonvdb::film::{FilmError, read_rgb, read_variance};
 use photonvdb::lab::{KnownImage, Sweep};
 use photonvdb::scene::{Overrides, Scene, SceneFile};
 
+use super::console::say;
 use super::error::CliError;
 use super::resources::cpu_seconds;
 use super::thread_pool;
@@ -74,7 +75,7 @@ fn load_scene(
     };
     let scene = Scene::load_with(&arguments.scene, &overrides)?;
     if !arguments.quiet {
-        scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
     }
     Ok(scene)
 }
