@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use photonvdb::film::ImageError;
-use photonvdb::render::{ErrorEstimate, RenderReport};
+use photonvdb::render::{ErrorEstimate, RenderReport, StageSeconds};
 use photonvdb::scene::Plan;
 use serde::Serialize;
 
+use super::resources::{cpu_seconds, peak_memory_bytes};
 use super::settings::Settings;
 
 /// What `--report` writes. Figures that are unknown are `null`.
@@ -42,6 +43,36 @@ pub struct Report {
     /// Against the reference, if one was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
+}
+
+impl Report {
+    /// Of a render that took so many seconds to load and to write, with estimates from k photons; the total and a comparison are added
+    /// later.
+    pub fn of(
+        made: &RenderReport,
+        plan: Plan,
+        settings: Settings,
+        k: usize,
+        [load, write]: [f64; 2],
+    ) -> Self {
+        let StageSeconds { trace, build, calibrate, gather } = made.seconds;
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            plan,
+            settings,
+            passes_done: made.passes_done,
+            photons: made.into(),
+            power: made.into(),
+            calibration: CalibrationFigures::of(made, k),
+            seconds: Seconds { load, trace, build, calibrate, gather, write, total: 0.0 },
+            cpu_seconds: cpu_seconds(),
+            peak_memory_bytes: peak_memory_bytes(),
+            estimated_relative_error: made.error.map(|error| error.total()),
+            filter_radius: made.filter_radius,
+            estimated_error: made.error.map(Into::into),
+            comparison: None,
+        }
+    }
 }
 
 /// Photons over all passes.

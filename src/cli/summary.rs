@@ -3,9 +3,11 @@
 use photonvdb::render::RenderReport;
 use photonvdb::scene::{Plan, Scene};
 
-use super::args::RenderArguments;
 use super::console::say;
-use super::report::{CalibrationFigures, Comparison, PhotonCounts, Power, Seconds, is_stdout};
+use super::render::args::RenderArguments;
+use super::report::{
+    CalibrationFigures, Comparison, PhotonCounts, Power, Report, Seconds, is_stdout,
+};
 
 /// Speaks unless told to be quiet.
 #[derive(Clone, Copy)]
@@ -39,8 +41,17 @@ impl Summary {
         self.line(&format!("ended after pass {passes_done}"));
     }
 
+    /// What it took, and what came of it.
+    pub fn report(self, made: &RenderReport, report: &Report, max_order: u32) {
+        self.times(&report.seconds, &report.photons);
+        report.calibration.iter().for_each(|calibration| self.calibration(calibration));
+        self.power(&report.power, max_order);
+        self.error(made);
+        report.comparison.iter().for_each(|comparison| self.comparison(comparison));
+    }
+
     /// How far the image is from the truth, by its own account.
-    pub fn error(self, made: &RenderReport) {
+    fn error(self, made: &RenderReport) {
         let Some(error) = made.error else { return };
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
         let filter = match made.filter_radius {
@@ -57,7 +68,7 @@ impl Summary {
     }
 
     /// Where the time went.
-    pub fn times(self, seconds: &Seconds, photons: &PhotonCounts) {
+    fn times(self, seconds: &Seconds, photons: &PhotonCounts) {
         let Seconds { load, trace, build, calibrate, gather, write, total } = seconds;
         let calibrate = match *calibrate {
             0.0 => String::new(),
@@ -77,7 +88,7 @@ impl Summary {
     }
 
     /// What the divisor was measured to be.
-    pub fn calibration(self, calibration: &CalibrationFigures) {
+    fn calibration(self, calibration: &CalibrationFigures) {
         let CalibrationFigures { k, constant, std_error, .. } = calibration;
         self.line(&format!(
             "divisor calibrated: {k} photons count as {constant:.3} +- {std_error:.3}"
@@ -85,7 +96,7 @@ impl Summary {
     }
 
     /// That no light was sent, or that photons were cut off at the last order followed, if it shows.
-    pub fn power(self, power: &Power, max_order: u32) {
+    fn power(self, power: &Power, max_order: u32) {
         let sum = |rgb: [f64; 3]| rgb.iter().sum::<f64>();
         if sum(power.emitted) == 0.0 {
             self.line(
@@ -102,7 +113,7 @@ impl Summary {
     }
 
     /// How far the image is from its reference.
-    pub fn comparison(self, comparison: &Comparison) {
+    fn comparison(self, comparison: &Comparison) {
         self.line(&format!(
             "against {}: mean {:.4} of the reference, relative RMSE {:.4}, {:.4} in blocks of 16",
             comparison.reference.display(),

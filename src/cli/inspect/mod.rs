@@ -1,6 +1,7 @@
 //! `photonvdb inspect`: what is in a file, for people or as JSON. The first bytes tell the kind of file,
 //! whatever its name; what is neither OpenVDB nor OpenEXR is taken for a scene.
 
+pub mod args;
 mod exr;
 mod grid_values;
 mod scene;
@@ -10,8 +11,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::args::InspectArguments;
 use super::error::CliError;
+use args::InspectArguments;
 
 /// First bytes of an OpenVDB file: a 64-bit number that spells ` BDV`.
 const VDB_MAGIC: &[u8] = b" BDV\0\0\0\0";

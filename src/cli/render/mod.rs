@@ -1,5 +1,7 @@
 //! `photonvdb render`: a scene in, an image and a report out.
 
+pub mod args;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -9,18 +11,17 @@ use photonvdb::render::{
 };
 use photonvdb::scene::{Plan, Scene};
 
-use super::args::RenderArguments;
 use super::error::CliError;
 use super::image_files::write_images;
 use super::interrupt;
 use super::outputs;
 use super::progress::Progress;
-use super::report::{CalibrationFigures, Comparison, Report, Seconds};
-use super::resources::{cpu_seconds, peak_memory_bytes};
+use super::report::{Comparison, Report};
 use super::settings::Settings;
 use super::summary::Summary;
 use super::text_file::write_json;
 use super::thread_pool;
+use args::RenderArguments;
 
 /// Renders what the arguments ask for.
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
@@ -61,45 +62,18 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let (film, options) = (&rendering.film, arguments.exr_options());
     // What else was asked for is written all the same.
     let written = pool.install(|| write_images(files, film, &options, &metadata));
-    let mut report = Report {
-        version: env!("CARGO_PKG_VERSION"),
-        plan,
-        settings,
-        passes_done: made.passes_done,
-        photons: made.into(),
-        power: made.into(),
-        calibration: CalibrationFigures::of(made, scene.estimate.k),
-        seconds: Seconds {
-            load,
-            trace: made.seconds.trace,
-            build: made.seconds.build,
-            calibrate: made.seconds.calibrate,
-            gather: made.seconds.gather,
-            write: write_started.elapsed().as_secs_f64(),
-            total: 0.0,
-        },
-        cpu_seconds: cpu_seconds(),
-        peak_memory_bytes: peak_memory_bytes(),
-        estimated_relative_error: made.error.map(|error| error.total()),
-        filter_radius: made.filter_radius,
-        estimated_error: made.error.map(Into::into),
-        comparison: None,
-    };
+    let seconds = [load, write_started.elapsed().as_secs_f64()];
+    let mut report = Report::of(made, plan, settings, scene.estimate.k, seconds);
     if let Some((path, reference)) = reference {
         let error = compare(&RgbImage::from(&rendering.film), &reference)?;
         report.comparison = Some(Comparison::new(path, error));
     }
     progress.show_finished(&rendering.film);
     report.seconds.total = seconds_before + started.elapsed().as_secs_f64();
-    if let Some(path) = &arguments.report {
-        write_json(path, &report)?;
-    }
-    summary.times(&report.seconds, &report.photons);
-    report.calibration.iter().for_each(|calibration| summary.calibration(calibration));
-    summary.power(&report.power, scene.photons.max_order);
-    summary.error(made);
-    report.comparison.iter().for_each(|comparison| summary.comparison(comparison));
-    written?;
+    let report_to = arguments.report.as_deref();
+    let reported = report_to.map_or(Ok(()), |path| write_json(path, &report));
+    summary.report(made, &report, scene.photons.max_order);
+    written.and(reported)?;
     summary.written(arguments);
     Ok(())
 }

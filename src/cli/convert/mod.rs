@@ -3,6 +3,8 @@
 //! The file that is read lies in memory, and of its grids one at a time. The new file takes its place
 //! when it is complete, so that both may have the same name.
 
+pub mod args;
+
 use std::fs::{self, File};
 use std::path::Path;
 
@@ -12,9 +14,9 @@ use photonvdb::medium::vdb::{
     VolumeSource, WrittenGrid, crop, find_grid,
 };
 
-use super::args::ConvertArguments;
 use super::console::say;
 use super::error::CliError;
+use args::ConvertArguments;
 
 /// Writes the grids that the arguments name.
 pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
