@@ -169,7 +169,7 @@ fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
     if sigma_t.x > 0.0 {
         return sigma_t.x;
     }
-    let own = nearest.photons.iter().filter_map(|n| map.sigma_t(n.photon));
+    let own = nearest.photons.iter().filter_map(|&photon| map.sigma_t(photon));
     own.fold(0.0, |largest, s| f64::from(s).max(largest))
 }
 
@@ -177,17 +177,18 @@ fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
 #[inline]
 fn for_weighted(nearest: &Nearest, options: EstimateOptions, mut add: impl FnMut(u32, f64)) {
     let inverse = 1.0 / (f64::from(nearest.radius) * f64::from(nearest.radius));
-    let Some((last, inner)) = nearest.photons.split_last() else { return };
+    let mut inner = nearest.iter();
+    let Some((last, square)) = inner.next_back() else { return };
     let kernel = options.kernel;
     let shares =
         if nearest.complete { Shares::of(options.constant, options.k) } else { Shares::FULL };
-    for neighbor in inner {
-        let weight = kernel.weight(f64::from(neighbor.distance_squared) * inverse);
-        add(neighbor.photon, weight * shares.inner);
+    for (photon, square) in inner {
+        let weight = kernel.weight(f64::from(square) * inverse);
+        add(photon, weight * shares.inner);
     }
     if shares.last > 0.0 {
-        let weight = kernel.weight(f64::from(last.distance_squared) * inverse);
-        add(last.photon, weight * shares.last);
+        let weight = kernel.weight(f64::from(square) * inverse);
+        add(last, weight * shares.last);
     }
 }
 
