@@ -23,12 +23,12 @@ impl Candidates {
     /// Whether another block fits.
     #[inline(always)]
     pub(super) fn has_room(&self) -> bool {
-        self.count + LANES <= self.squares.len() && self.count + LANES <= self.photons.len()
+        self.count + 2 * LANES <= self.squares.len()
     }
 
-    /// Makes room for `count` and a block.
+    /// Makes room for `count` and two blocks: the next one, and one to end with.
     pub(super) fn reserve(&mut self, count: usize) {
-        let room = (count + LANES).next_multiple_of(LANES).max(self.squares.len());
+        let room = (count + 2 * LANES).next_multiple_of(LANES).max(self.squares.len());
         self.squares.resize(room, f32::INFINITY);
         self.photons.resize(room, 0);
     }
@@ -48,13 +48,26 @@ impl Candidates {
         }
     }
 
+    /// The largest square.
+    #[inline(always)]
+    pub(super) fn largest<L: Lanes>(&mut self, lanes: L) -> f32 {
+        lanes.part(self.blocks(), f32::MAX).largest
+    }
+
+    /// The squares, and infinity to fill the last block.
+    #[inline(always)]
+    fn blocks(&mut self) -> &[[f32; LANES]] {
+        if let Some(after) = self.squares.get_mut(self.count..).and_then(<[f32]>::first_chunk_mut) {
+            *after = [f32::INFINITY; LANES];
+        }
+        self.squares.as_chunks::<LANES>().0.get(..self.count.div_ceil(LANES)).unwrap_or_default()
+    }
+
     /// The `k`-th least square, `k` from 1 up to the count; none of them is above `ceiling`.
     #[inline(always)]
     pub(super) fn kth<L: Lanes>(&mut self, lanes: L, k: usize, ceiling: f32) -> f32 {
         let count = self.count;
-        let end = count.next_multiple_of(LANES).min(self.squares.len());
-        self.squares[count..end].fill(f32::INFINITY);
-        let (blocks, _) = self.squares[..end].as_chunks::<LANES>();
+        let blocks = self.blocks();
         // The k-th is from `low` to `high`. Fewer than k are below `low`, and no fewer not above `high`.
         let (mut low, mut low_count) = (0.0_f32, 0);
         let (mut high, mut high_count) = (ceiling, count);
@@ -92,7 +105,7 @@ impl Candidates {
     /// Leaves the `k` nearest, with `kth` the square of the last of them; of those equally far the first. Returns where that last one is.
     #[inline(always)]
     pub(super) fn keep<L: Lanes>(&mut self, lanes: L, k: usize, kth: f32) -> usize {
-        let end = self.count.next_multiple_of(LANES).min(self.squares.len());
+        let end = self.count.next_multiple_of(LANES);
         let (squares, photons) = (&mut self.squares[..end], &mut self.photons[..end]);
         let bound = lanes.splat(kth);
         let (mut kept, mut farthest) = (0, 0);

@@ -11,7 +11,7 @@
 
 use crate::map::RADIUS_FLOOR;
 use crate::map::candidates::Candidates;
-use crate::map::lanes::{LANES, Lanes, Task};
+use crate::map::lanes::{Block, LANES, Lanes, Task};
 use crate::map::wide_tree::{Leaf, Node, WideTree};
 
 /// Levels of a tree of 2^32 photons.
@@ -56,11 +56,17 @@ impl Task for Search<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) -> bool {
         let limit = self.limit * self.limit;
-        let bound = self.last.and_then(|last| self.bound_from(last));
-        let mut reach = bound.map_or_else(
-            || lanes.call(#[inline(always)] || self.bound_from_tree(lanes)),
-            |(_, likely)| likely * likely,
-        );
+        let bound = match self.last {
+            Some(last) => self.bound_from(last),
+            None => None,
+        };
+        let mut reach = match bound {
+            Some((_, likely)) => likely * likely,
+            None => lanes.call(
+                #[inline(always)]
+                || self.bound_from_tree(lanes),
+            ),
+        };
         reach = self.gather(lanes, reach.min(limit));
         if self.candidates.count < self.k && reach < limit {
             reach = match (bound, self.last) {
@@ -87,7 +93,8 @@ impl Search<'_> {
     /// A distance that certainly holds k photons, and one that likely does, where the last query is near enough.
     #[inline(always)]
     fn bound_from(&self, last: LastQuery) -> Option<(f32, f32)> {
-        let [x, y, z] = std::array::from_fn(|axis| self.query[axis] - last.query[axis]);
+        let ([x, y, z], [last_x, last_y, last_z]) = (self.query, last.query);
+        let (x, y, z) = (x - last_x, y - last_y, z - last_z);
         let moved = (x * x + y * y + z * z).sqrt();
         // A few steps of rounding more.
         let certain = (last.radius + moved) * (1.0 + 1e-5) + f32::MIN_POSITIVE;
@@ -96,7 +103,7 @@ impl Search<'_> {
             && certain <= last.radius * WARM_RATIO;
         // The k-th distance of balls apart varies by 1 / (3 sqrt(k)), by less where they share photons.
         let likely = last.radius * (1.0 + 0.75 / (self.k as f32).sqrt());
-        is_near.then(|| (certain, certain.min(likely)))
+        if is_near { Some((certain, certain.min(likely))) } else { None }
     }
 
     /// A squared distance that holds k photons, if there are as many: infinite if there are not.
@@ -106,9 +113,9 @@ impl Search<'_> {
         if tree.photon_count < self.k {
             return f32::INFINITY;
         }
-        let query = self.query.map(|coordinate| lanes.splat(coordinate));
+        let query = splat(lanes, self.query);
         // Photons of a child of the current node, of which there is a full one if any has k.
-        let (mut first, mut size) = (0, LANES.pow(tree.levels.len() as u32));
+        let (mut first, mut size) = (0, LANES.pow(tree.levels.len() as u32 + 1));
         for level in tree.levels.iter().rev() {
             let Some(node) = level.get(first / size) else { break };
             let mut squares = [0.0; LANES];
@@ -135,7 +142,8 @@ impl Search<'_> {
         if self.candidates.count < self.k {
             return f32::INFINITY;
         }
-        self.candidates.kth(lanes, self.k, f32::MAX)
+        let ceiling = self.candidates.largest(lanes);
+        self.candidates.kth(lanes, self.k, ceiling)
     }
 
     /// Gathers the photons whose squared distance is not above `reach`, in the order of the tree. Where they crowd, those that
@@ -146,17 +154,13 @@ impl Search<'_> {
         let mut ceiling = reach;
         self.candidates.count = 0;
         let Some(top) = tree.levels.len().checked_sub(1) else { return ceiling };
-        let query = self.query.map(|coordinate| lanes.splat(coordinate));
+        let query = splat(lanes, self.query);
         let mut bound = lanes.splat(reach);
         // By level: the node that the search is in, and its children that are yet to be visited.
         let mut nodes = [0; MOST_LEVELS];
         let mut masks = [0_u32; MOST_LEVELS];
         let (mut height, mut node) = (top, 0);
-        let children = |height: usize, node: usize, bound: L::Floats| {
-            let node = tree.levels.get(height).and_then(|level| level.get(node));
-            node.map_or(0, |node| lanes.not_above(box_squares(lanes, node, query), bound))
-        };
-        let mut mask = children(top, 0, bound);
+        let mut mask = children_within(lanes, &tree.levels[top], 0, query, bound);
         loop {
             if height == 0 {
                 while mask != 0 {
@@ -190,7 +194,7 @@ impl Search<'_> {
             masks[height % MOST_LEVELS] = mask;
             height -= 1;
             node = child;
-            mask = children(height, node, bound);
+            mask = children_within(lanes, &tree.levels[height], node, query, bound);
         }
     }
 
@@ -210,27 +214,58 @@ impl Search<'_> {
     }
 }
 
+/// A place in every lane.
+#[inline(always)]
+fn splat<L: Lanes>(lanes: L, [x, y, z]: [f32; 3]) -> [L::Floats; 3] {
+    [lanes.splat(x), lanes.splat(y), lanes.splat(z)]
+}
+
+#[inline(always)]
+fn sum_of_squares<L: Lanes>(lanes: L, [x, y, z]: [L::Floats; 3]) -> L::Floats {
+    lanes.add(lanes.add(lanes.mul(x, x), lanes.mul(y, y)), lanes.mul(z, z))
+}
+
 /// Squared distances of a leaf's photons.
 #[inline(always)]
-fn photon_squares<L: Lanes>(lanes: L, leaf: &Leaf, query: [L::Floats; 3]) -> L::Floats {
-    let [x, y, z] = [0, 1, 2].map(
-        #[inline(always)]
-        |axis| lanes.sub(lanes.load(&leaf[axis]), query[axis]),
-    );
-    lanes.add(lanes.add(lanes.mul(x, x), lanes.mul(y, y)), lanes.mul(z, z))
+fn photon_squares<L: Lanes>(lanes: L, [x, y, z]: &Leaf, query: [L::Floats; 3]) -> L::Floats {
+    let offset = [
+        lanes.sub(lanes.load(x), query[0]),
+        lanes.sub(lanes.load(y), query[1]),
+        lanes.sub(lanes.load(z), query[2]),
+    ];
+    sum_of_squares(lanes, offset)
 }
 
 /// Squared distances of a node's children: 0 inside.
 #[inline(always)]
 fn box_squares<L: Lanes>(lanes: L, node: &Node, query: [L::Floats; 3]) -> L::Floats {
-    let zero = lanes.splat(0.0);
-    let [x, y, z] = [0, 1, 2].map(
-        #[inline(always)]
-        |axis| {
-            let below = lanes.sub(lanes.load(&node.low[axis]), query[axis]);
-            let above = lanes.sub(query[axis], lanes.load(&node.high[axis]));
-            lanes.max(lanes.max(below, above), zero)
-        },
-    );
-    lanes.add(lanes.add(lanes.mul(x, x), lanes.mul(y, y)), lanes.mul(z, z))
+    let offset = [
+        outside(lanes, &node.low[0], &node.high[0], query[0]),
+        outside(lanes, &node.low[1], &node.high[1], query[1]),
+        outside(lanes, &node.low[2], &node.high[2], query[2]),
+    ];
+    sum_of_squares(lanes, offset)
+}
+
+/// How far a coordinate is outside intervals: 0 inside.
+#[inline(always)]
+fn outside<L: Lanes>(lanes: L, low: &Block<f32>, high: &Block<f32>, at: L::Floats) -> L::Floats {
+    let below = lanes.sub(lanes.load(low), at);
+    let above = lanes.sub(at, lanes.load(high));
+    lanes.max(lanes.max(below, above), lanes.splat(0.0))
+}
+
+/// Which children of a node are within a squared distance.
+#[inline(always)]
+fn children_within<L: Lanes>(
+    lanes: L,
+    level: &[Node],
+    node: usize,
+    query: [L::Floats; 3],
+    bound: L::Floats,
+) -> u32 {
+    match level.get(node) {
+        Some(node) => lanes.not_above(box_squares(lanes, node, query), bound),
+        None => 0,
+    }
 }

@@ -1,6 +1,6 @@
 //! Sixteen lanes as one AVX-512 register or two of AVX2.
 
-use std::arch::x86_64::{__m256, __m256i, __m512, _CMP_LE_OQ};
+use std::arch::x86_64::{__m128, __m128i, __m256, __m256i, __m512, _CMP_LE_OQ};
 
 use pulp::bytemuck::cast;
 use pulp::x86::{V3, V4};
@@ -34,11 +34,14 @@ const NUMBERS: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
 /// The lanes of each half of a mask to be moved to the front, and how many they are in the first half.
 #[inline(always)]
 fn permutations(v3: V3, mask: u32) -> ([__m256i; 2], usize) {
-    let of_half = |half: u32| {
-        let lanes = LANES_OF_MASK[(half & 0xff) as usize];
-        v3.avx2._mm256_cvtepu8_epi32(cast([u64::from_le_bytes(lanes), 0]))
-    };
-    ([of_half(mask), of_half(mask >> HALF)], (mask & 0xff).count_ones() as usize)
+    let halves = [permutation(v3, mask), permutation(v3, mask >> HALF)];
+    (halves, (mask & 0xff).count_ones() as usize)
+}
+
+#[inline(always)]
+fn permutation(v3: V3, mask: u32) -> __m256i {
+    let lanes = LANES_OF_MASK[(mask & 0xff) as usize];
+    v3.avx2._mm256_cvtepu8_epi32(cast([u64::from_le_bytes(lanes), 0]))
 }
 
 /// Writes eight numbers from the front and eight from the `kept`-th on.
@@ -48,13 +51,6 @@ fn write<T: Copy>([low, high]: [[T; HALF]; 2], kept: usize, to: &mut [T; LANES])
     if let Some(to) = to.get_mut(kept..kept + HALF) {
         to.copy_from_slice(&high);
     }
-}
-
-/// The largest, or with `pick` another one, of eight.
-#[inline(always)]
-fn reduce(floats: __m256, pick: impl Fn(f32, f32) -> f32) -> f32 {
-    let [a, b, c, d, e, f, g, h]: [f32; HALF] = cast(floats);
-    pick(pick(pick(a, e), pick(b, f)), pick(pick(c, g), pick(d, h)))
 }
 
 impl Lanes for V3 {
@@ -97,37 +93,36 @@ impl Lanes for V3 {
 
     #[inline(always)]
     fn not_above(self, a: [__m256; 2], b: [__m256; 2]) -> u32 {
-        let of_half = |half: usize| {
-            let compared = self.avx._mm256_cmp_ps::<_CMP_LE_OQ>(a[half], b[half]);
-            self.avx._mm256_movemask_ps(compared) as u32
-        };
-        of_half(0) | of_half(1) << HALF
+        let low = self.avx._mm256_cmp_ps::<_CMP_LE_OQ>(a[0], b[0]);
+        let high = self.avx._mm256_cmp_ps::<_CMP_LE_OQ>(a[1], b[1]);
+        let [low, high] = [self.avx._mm256_movemask_ps(low), self.avx._mm256_movemask_ps(high)];
+        (low | high << HALF) as u32
     }
 
     #[inline(always)]
     fn compress(self, floats: [__m256; 2], mask: u32, to: &mut [f32; LANES]) {
         let (lanes, kept) = permutations(self, mask);
-        let moved =
-            |half: usize| cast(self.avx2._mm256_permutevar8x32_ps(floats[half], lanes[half]));
-        write([moved(0), moved(1)], kept, to);
+        let low = self.avx2._mm256_permutevar8x32_ps(floats[0], lanes[0]);
+        let high = self.avx2._mm256_permutevar8x32_ps(floats[1], lanes[1]);
+        write([cast(low), cast(high)], kept, to);
     }
 
     #[inline(always)]
     fn compress_numbers(self, first: u32, mask: u32, to: &mut [u32; LANES]) {
         let (lanes, kept) = permutations(self, mask);
-        let from = |lanes, first: u32| {
-            cast(self.avx2._mm256_add_epi32(lanes, self.avx._mm256_set1_epi32(first as i32)))
-        };
-        write([from(lanes[0], first), from(lanes[1], first + HALF as u32)], kept, to);
+        let second = first + HALF as u32;
+        let low = self.avx2._mm256_add_epi32(lanes[0], self.avx._mm256_set1_epi32(first as i32));
+        let high = self.avx2._mm256_add_epi32(lanes[1], self.avx._mm256_set1_epi32(second as i32));
+        write([cast(low), cast(high)], kept, to);
     }
 
     #[inline(always)]
     fn compress_block(self, block: [u32; LANES], mask: u32, to: &mut [u32; LANES]) {
         let (lanes, kept) = permutations(self, mask);
         let halves: [__m256i; 2] = cast(block);
-        let moved =
-            |half: usize| cast(self.avx2._mm256_permutevar8x32_epi32(halves[half], lanes[half]));
-        write([moved(0), moved(1)], kept, to);
+        let low = self.avx2._mm256_permutevar8x32_epi32(halves[0], lanes[0]);
+        let high = self.avx2._mm256_permutevar8x32_epi32(halves[1], lanes[1]);
+        write([cast(low), cast(high)], kept, to);
     }
 
     #[inline(always)]
@@ -146,11 +141,22 @@ impl Lanes for V3 {
                 smallest = self.avx._mm256_min_ps(smallest, above);
             }
         }
-        let counts: [i32; HALF] = cast(minus_count);
+        let [a, b]: [__m128i; 2] = cast(minus_count);
+        let counts = self.sse2._mm_add_epi32(a, b);
+        let counts = self.sse2._mm_add_epi32(counts, self.sse2._mm_shuffle_epi32::<0b1110>(counts));
+        let counts = self.sse2._mm_add_epi32(counts, self.sse2._mm_shuffle_epi32::<0b01>(counts));
+        let [a, b]: [__m128; 2] = cast(largest);
+        let largest = self.sse._mm_max_ps(a, b);
+        let largest = self.sse._mm_max_ps(largest, self.sse._mm_movehl_ps(largest, largest));
+        let largest = self.sse._mm_max_ps(largest, self.sse3._mm_movehdup_ps(largest));
+        let [a, b]: [__m128; 2] = cast(smallest);
+        let smallest = self.sse._mm_min_ps(a, b);
+        let smallest = self.sse._mm_min_ps(smallest, self.sse._mm_movehl_ps(smallest, smallest));
+        let smallest = self.sse._mm_min_ps(smallest, self.sse3._mm_movehdup_ps(smallest));
         Parted {
-            count: counts.iter().sum::<i32>().unsigned_abs() as usize,
-            largest: reduce(largest, |a, b| if a > b { a } else { b }),
-            smallest: reduce(smallest, |a, b| if a < b { a } else { b }),
+            count: self.sse2._mm_cvtsi128_si32(counts).unsigned_abs() as usize,
+            largest: self.sse._mm_cvtss_f32(largest),
+            smallest: self.sse._mm_cvtss_f32(smallest),
         }
     }
 }
