@@ -21,7 +21,10 @@ const ROUNDS: usize = 5;
 fn main() {
     let count = std::env::args().filter_map(|arg| arg.parse().ok()).next().unwrap_or(1_000_000);
     println!("{count} photons, thousand estimates a second and core; ratio to plain kiddo");
-    println!("{:8} {:>4} {:>12} {:8} {:>8} {:>8} {:>6}", "cloud", "k", "phase", "order", "kiddo", "ours", "ratio");
+    println!(
+        "{:8} {:>4} {:>12} {:8} {:>8} {:>8} {:>6}",
+        "cloud", "k", "phase", "order", "kiddo", "ours", "ratio"
+    );
     for cloud in Cloud::ALL {
         for phase in [Phase::Isotropic, Phase::HenyeyGreenstein { g: 0.5 }] {
             let Some(map) = cloud.map(count, phase != Phase::Isotropic) else { return };

@@ -102,9 +102,8 @@ pub fn queries() -> Vec<DVec3> {
         let mut tile: Vec<DVec3> = (0..16 * 16 * 64)
             .map(|i| {
                 let (x, y, z) = (left + i % 16, top + i / 16 % 16, i / 256);
-                let middle = |n: i32, count: i32| {
-                    (f64::from(n) + 0.5) / f64::from(count) * 2.0 - 1.0
-                };
+                let middle =
+                    |n: i32, count: i32| (f64::from(n) + 0.5) / f64::from(count) * 2.0 - 1.0;
                 DVec3::new(middle(x, 128), middle(y, 128), middle(z, 64))
             })
             .collect();

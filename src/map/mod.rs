@@ -1,6 +1,6 @@
 //! The photon map: a tree over photon positions, and what estimates need of each photon.
 //!
-//! Photons are kept in the order of the tree, so that neighbours in space are neighbours in memory. A photon takes 26 bytes, and
+//! Photons are kept in the order of the tree, so that neighbours in space are neighbours in memory. A photon takes 25 bytes, and
 //! 4 more for its direction, sigma_t or order each where the scene needs them.
 
 mod candidates;
@@ -19,7 +19,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use wide_tree::{Record, WideTree};
 
-use crate::math::DVec3;
+use crate::math::{DVec3, Rgb};
 use crate::trace::{MapFrame, Photon};
 
 /// What to keep of each photon besides position and power.
@@ -117,6 +117,27 @@ impl PhotonMap {
     #[inline]
     pub fn power(&self, photon: u32) -> [f32; 3] {
         self.power[photon as usize]
+    }
+
+    /// Sum of the powers of photons \[W\].
+    #[inline]
+    pub fn total_power(&self, photons: &[u32]) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &photon in photons {
+            let [r, g, b] = self.power[photon as usize];
+            sum += Rgb::new(f64::from(r), f64::from(g), f64::from(b));
+        }
+        sum
+    }
+
+    /// What is kept of each photon besides position and power.
+    #[inline]
+    pub fn columns(&self) -> Columns {
+        Columns {
+            direction: !self.direction.is_empty(),
+            sigma_t: !self.sigma_t.is_empty(),
+            order: !self.order.is_empty(),
+        }
     }
 
     /// Direction of travel, if kept.

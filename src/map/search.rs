@@ -73,9 +73,15 @@ impl Task for Search<'_> {
                 (Some((certain, _)), Some(last)) if certain <= last.radius * RETRY_RATIO => {
                     certain * certain
                 }
-                _ => lanes.call(#[inline(always)] || self.bound_from_tree(lanes)),
+                _ => lanes.call(
+                    #[inline(always)]
+                    || self.bound_from_tree(lanes),
+                ),
             };
-            reach = lanes.call(#[inline(always)] || self.gather(lanes, reach.min(limit)));
+            reach = lanes.call(
+                #[inline(always)]
+                || self.gather(lanes, reach.min(limit)),
+            );
         }
         if self.candidates.count < self.k {
             return false;
@@ -98,9 +104,8 @@ impl Search<'_> {
         let moved = (x * x + y * y + z * z).sqrt();
         // A few steps of rounding more.
         let certain = (last.radius + moved) * (1.0 + 1e-5) + f32::MIN_POSITIVE;
-        let is_near = last.k == self.k
-            && last.radius > RADIUS_FLOOR
-            && certain <= last.radius * WARM_RATIO;
+        let is_near =
+            last.k == self.k && last.radius > RADIUS_FLOOR && certain <= last.radius * WARM_RATIO;
         // The k-th distance of balls apart varies by 1 / (3 sqrt(k)), by less where they share photons.
         let likely = last.radius * (1.0 + 0.75 / (self.k as f32).sqrt());
         if is_near { Some((certain, certain.min(likely))) } else { None }
@@ -114,20 +119,24 @@ impl Search<'_> {
             return f32::INFINITY;
         }
         let query = splat(lanes, self.query);
-        // Photons of a child of the current node, of which there is a full one if any has k.
+        // The photons of a node: from the root to the nearest child that is full as long as those hold k.
         let (mut first, mut size) = (0, LANES.pow(tree.levels.len() as u32 + 1));
         for level in tree.levels.iter().rev() {
+            let child_size = size / LANES;
+            let full = ((tree.photon_count - first) / child_size).min(LANES);
             let Some(node) = level.get(first / size) else { break };
+            if child_size < self.k || full == 0 {
+                break;
+            }
             let mut squares = [0.0; LANES];
             lanes.compress(box_squares(lanes, node, query), 0xffff, &mut squares);
-            let child_size = size / LANES;
-            let held = |child: usize| {
-                tree.photon_count.saturating_sub(first + child * child_size).min(child_size)
-            };
-            let holding = (0..LANES).filter(|&child| held(child) >= self.k);
-            let nearest = holding.min_by(|&a, &b| squares[a].total_cmp(&squares[b]));
-            let Some(child) = nearest else { break };
-            first += child * child_size;
+            let mut nearest = 0;
+            for child in 1..full {
+                if squares[child] < squares[nearest] {
+                    nearest = child;
+                }
+            }
+            first += nearest * child_size;
             size = child_size;
         }
         self.candidates.count = 0;
@@ -170,7 +179,10 @@ impl Search<'_> {
                     let squares = photon_squares(lanes, leaf, query);
                     let mut near = lanes.not_above(squares, bound);
                     if !self.candidates.has_room() {
-                        let kth = lanes.call(#[inline(always)] || self.make_room(lanes, ceiling));
+                        let kth = lanes.call(
+                            #[inline(always)]
+                            || self.make_room(lanes, ceiling),
+                        );
                         if let Some(kth) = kth {
                             // Those to come are after the k kept in the order of ties.
                             bound = lanes.splat(kth.next_down());

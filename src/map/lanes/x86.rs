@@ -211,10 +211,9 @@ impl Lanes for V4 {
 
     #[inline(always)]
     fn compress_numbers(self, first: u32, mask: u32, to: &mut [u32; LANES]) {
-        let numbers = self.avx512f._mm512_add_epi32(
-            cast(NUMBERS),
-            self.avx512f._mm512_set1_epi32(first as i32),
-        );
+        let numbers = self
+            .avx512f
+            ._mm512_add_epi32(cast(NUMBERS), self.avx512f._mm512_set1_epi32(first as i32));
         *to = cast(self.avx512f._mm512_maskz_compress_epi32(mask as u16, numbers));
     }
 
