@@ -14,7 +14,7 @@
 //! | [`scene`] | a scene | [`Plan`](scene::Plan): what it needs of the program, and nothing more |
 //! | [`emission`] | lights | [`EmittedPhoton`](emission::EmittedPhoton): ray, power, first free flight |
 //! | [`trace`] | emitted photons | [`Photon`](trace::Photon): place, direction of travel, power, order of a collision |
-//! | [`map`] | photons | [`PhotonMap`](map::PhotonMap): a k-d tree over their places |
+//! | [`map`] | photons | [`PhotonMap`](map::PhotonMap): a tree over their places |
 //! | [`estimate`] | the map | [`Estimate`](estimate::Estimate): power density, fluence; light scattered towards a direction |
 //! | [`render`] | camera rays and estimates | [`Film`](film::Film): radiance by origin, transmittance |
 //! | [`lab`] | models and experiments | what estimates get wrong: exact and measured bias and variance |

@@ -22,7 +22,7 @@ use std::num::NonZeroUsize;
 
 use divisor::Shares;
 
-use crate::map::{Nearest, NearestPhotons, PhotonMap};
+use crate::map::{Columns, Nearest, NearestPhotons, PhotonMap};
 use crate::math::{Ball, DVec3, Rgb};
 use crate::medium::{Extinction, ISOTROPIC, Medium, Scattering};
 
@@ -90,8 +90,15 @@ impl<'a, E: Extinction> Estimator<'a, E> {
         let nearest = finder.find(place, options.k, options.max_radius);
         let radius = f64::from(nearest.radius) * map.frame().unit;
         let volume = options.kernel.mass(medium.bounds.overlap(Ball { center: place, radius }));
-        let mut sum = Rgb::ZERO;
-        for_weighted(&nearest, *options, |photon, weight| sum += rgb(map.power(photon)) * weight);
+        let sum = match options.kernel {
+            Kernel::Constant => equally_weighted(map, &nearest, *options),
+            Kernel::Epanechnikov => {
+                let mut sum = Rgb::ZERO;
+                let add = |photon, weight| sum += rgb(map.power(photon)) * weight;
+                for_weighted(&nearest, *options, add);
+                sum
+            }
+        };
         Estimate { value: over(sum, volume), radius, photon_count: nearest.photons.len() }
     }
 
@@ -113,7 +120,8 @@ impl<'a, E: Extinction> Estimator<'a, E> {
         })
     }
 
-    /// Sums what is `seen` of each photon's power times its weight in the fluence over those about a place.
+    /// Sums what is `seen` of each photon's power times its weight in the fluence over those about a place. It is in proportion to
+    /// the power, and the same for all photons but for what the map keeps of each.
     fn gather_fluence(
         &mut self,
         place: DVec3,
@@ -135,6 +143,17 @@ impl<'a, E: Extinction> Estimator<'a, E> {
         let ball = Ball { center: place, radius };
         let falloff = options.kernel.falloff();
         let moments = extinction.ball_moments(&medium.bounds, ball, ceiling.x, turn, falloff);
+        let per_fluence = |sum: Rgb| {
+            let channel = |c: usize| over_scalar(sum[c], moments.mass * ceiling[c]);
+            Rgb::new(channel(0), channel(1), channel(2))
+        };
+        let is_even = options.kernel == Kernel::Constant && moments.tilt == DVec3::ZERO;
+        if is_even && map.columns() == Columns::default() {
+            // All that is known of a photon besides its place is its power, which all of them are seen by alike.
+            let sum = equally_weighted(map, &nearest, *options);
+            gathered.multiple = per_fluence(seen(nearest.photons[0], sum, 1.0));
+            return gathered;
+        }
         let to_offset = 1.0 / f64::from(nearest.radius);
         for_weighted(&nearest, *options, |photon, weight| {
             let clipped = match map.sigma_t(photon) {
@@ -154,10 +173,6 @@ impl<'a, E: Extinction> Estimator<'a, E> {
                 _ => gathered.multiple += light,
             }
         });
-        let per_fluence = |sum: Rgb| {
-            let channel = |c: usize| over_scalar(sum[c], moments.mass * ceiling[c]);
-            Rgb::new(channel(0), channel(1), channel(2))
-        };
         gathered.single = per_fluence(gathered.single);
         gathered.multiple = per_fluence(gathered.multiple);
         gathered
@@ -169,25 +184,35 @@ fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
     if sigma_t.x > 0.0 {
         return sigma_t.x;
     }
-    let own = nearest.photons.iter().filter_map(|n| map.sigma_t(n.photon));
+    let own = nearest.photons.iter().filter_map(|&photon| map.sigma_t(photon));
     own.fold(0.0, |largest, s| f64::from(s).max(largest))
+}
+
+/// The power of the photons, where the kernel weighs them all alike.
+#[inline]
+fn equally_weighted(map: &PhotonMap, nearest: &Nearest, options: EstimateOptions) -> Rgb {
+    let Some((&last, inner)) = nearest.photons.split_last() else { return Rgb::ZERO };
+    let shares =
+        if nearest.complete { Shares::of(options.constant, options.k) } else { Shares::FULL };
+    map.total_power(inner) * shares.inner + rgb(map.power(last)) * shares.last
 }
 
 /// Calls `add` with each photon and its weight: the kernel's, times what the divisor leaves of it.
 #[inline]
 fn for_weighted(nearest: &Nearest, options: EstimateOptions, mut add: impl FnMut(u32, f64)) {
     let inverse = 1.0 / (f64::from(nearest.radius) * f64::from(nearest.radius));
-    let Some((last, inner)) = nearest.photons.split_last() else { return };
+    let mut inner = nearest.iter();
+    let Some((last, square)) = inner.next_back() else { return };
     let kernel = options.kernel;
     let shares =
         if nearest.complete { Shares::of(options.constant, options.k) } else { Shares::FULL };
-    for neighbor in inner {
-        let weight = kernel.weight(f64::from(neighbor.distance_squared) * inverse);
-        add(neighbor.photon, weight * shares.inner);
+    for (photon, square) in inner {
+        let weight = kernel.weight(f64::from(square) * inverse);
+        add(photon, weight * shares.inner);
     }
     if shares.last > 0.0 {
-        let weight = kernel.weight(f64::from(last.distance_squared) * inverse);
-        add(last.photon, weight * shares.last);
+        let weight = kernel.weight(f64::from(square) * inverse);
+        add(last, weight * shares.last);
     }
 }
 

@@ -1,28 +1,26 @@
-//! The photon map: a k-d tree over photon positions, and what estimates need of each photon.
+//! The photon map: a tree over photon positions, and what estimates need of each photon.
 //!
-//! Photons are sorted along a Morton curve first, so that neighbours in space are neighbours in memory; the
-//! tree is kiddo's immutable one, in the configuration that measured best for coherent queries (flat leaves
-//! of 32, Eytzinger stems). A photon takes 40 bytes, and 4 more for its direction, sigma_t or order each where
-//! the scene needs them.
+//! Photons are kept in the order of the tree, so that neighbours in space are neighbours in memory. A photon takes 25 bytes, and
+//! 4 more for its direction, sigma_t or order each where the scene needs them.
 
+mod candidates;
+mod lanes;
 mod morton;
 mod nearest;
 mod packed;
+mod search;
+mod wide_tree;
 
 pub use morton::morton_code;
-pub use nearest::{Nearest, NearestPhotons, Neighbor, RADIUS_FLOOR};
+pub use nearest::{Nearest, NearestPhotons, RADIUS_FLOOR};
 pub use packed::PackedDirection;
 
 use glam::Vec3;
-use kiddo::leaf_strategies::FlatVec;
-use kiddo::{Eytzinger, KdTree};
 use rayon::prelude::*;
+use wide_tree::{Record, WideTree};
 
-use crate::math::DVec3;
+use crate::math::{DVec3, Rgb};
 use crate::trace::{MapFrame, Photon};
-
-/// `f32` coordinates, `u32` ids, three dimensions, leaves of 32.
-type PhotonTree = KdTree<f32, u32, Eytzinger, FlatVec<f32, u32, 3, 32>, 3, 32>;
 
 /// What to keep of each photon besides position and power.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,9 +36,8 @@ pub struct Columns {
 /// Photons in space.
 #[derive(Debug)]
 pub struct PhotonMap {
-    tree: PhotonTree,
+    tree: WideTree,
     frame: MapFrame,
-    position: Vec<[f32; 3]>,
     power: Vec<[f32; 3]>,
     direction: Vec<PackedDirection>,
     sigma_t: Vec<f32>,
@@ -50,32 +47,29 @@ pub struct PhotonMap {
 /// Why a photon map could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
-    /// The tree refused the photons.
-    #[error(
-        "the photon map of {count} photons could not be built ({cause}): use fewer photons a pass"
-    )]
-    Tree {
+    /// More photons than indices.
+    #[error("a photon map holds up to {} photons, not {count}: use fewer photons a pass", u32::MAX)]
+    TooMany {
         /// Photons to be stored.
         count: usize,
-        /// The tree's own words.
-        cause: String,
     },
 }
 
 impl PhotonMap {
     /// Builds the map. Photons whose place or power is not finite are left out.
     pub fn build(photons: &[Photon], frame: MapFrame, columns: Columns) -> Result<Self, MapError> {
-        let order = morton::sorted_indices(photons);
-        let gather = |index: &u32| photons[*index as usize];
-        let sorted = || order.par_iter().map(gather);
-        let positions: Vec<[f32; 3]> = sorted().map(|p| p.position).collect();
-        let tree = PhotonTree::builder()
-            .with_parallel_construction()
-            .build_from_slice(&positions)
-            .map_err(|error| MapError::Tree {
-                count: positions.len(),
-                cause: format!("{error:?}"),
-            })?;
+        // The leaf's unused lanes have indices too.
+        if photons.len() >= u32::MAX as usize {
+            return Err(MapError::TooMany { count: photons.len() });
+        }
+        let is_finite =
+            |p: &Photon| p.position.iter().chain(&p.power).all(|value| value.is_finite());
+        let mut records: Vec<Record> = (photons.par_iter().zip(0_u32..photons.len() as u32))
+            .filter(|(p, _)| is_finite(p))
+            .map(|(p, photon)| Record { position: p.position, photon })
+            .collect();
+        let tree = WideTree::build(&mut records);
+        let sorted = || records.par_iter().map(|record| photons[record.photon as usize]);
         let direction = if columns.direction {
             sorted().map(|p| PackedDirection::new(p.direction)).collect()
         } else {
@@ -83,18 +77,9 @@ impl PhotonMap {
         };
         let sigma_t =
             if columns.sigma_t { sorted().map(|p| p.sigma_t).collect() } else { Vec::new() };
-        let order_column =
-            if columns.order { sorted().map(|p| p.order).collect() } else { Vec::new() };
+        let order = if columns.order { sorted().map(|p| p.order).collect() } else { Vec::new() };
         let power = sorted().map(|p| p.power).collect();
-        Ok(Self {
-            tree,
-            frame,
-            position: positions,
-            power,
-            direction,
-            sigma_t,
-            order: order_column,
-        })
+        Ok(Self { tree, frame, power, direction, sigma_t, order })
     }
 
     /// Photons stored.
@@ -114,9 +99,9 @@ impl PhotonMap {
 
     /// Bytes a photon takes, tree included.
     pub fn bytes_per_photon(&self) -> usize {
-        let tree = 3 * size_of::<f32>() + size_of::<u32>();
         let column = |is_empty: bool, bytes: usize| if is_empty { 0 } else { bytes };
-        tree + 2 * size_of::<[f32; 3]>()
+        self.tree.bytes_per_photon()
+            + size_of::<[f32; 3]>()
             + column(self.direction.is_empty(), size_of::<PackedDirection>())
             + column(self.sigma_t.is_empty(), size_of::<f32>())
             + column(self.order.is_empty(), size_of::<u32>())
@@ -125,13 +110,34 @@ impl PhotonMap {
     /// From a place to a photon, both in map coordinates.
     #[inline]
     pub fn offset(&self, photon: u32, from: [f32; 3]) -> Vec3 {
-        Vec3::from_array(self.position[photon as usize]) - Vec3::from_array(from)
+        Vec3::from_array(self.tree.position(photon)) - Vec3::from_array(from)
     }
 
     /// Power of a photon \[W\].
     #[inline]
     pub fn power(&self, photon: u32) -> [f32; 3] {
         self.power[photon as usize]
+    }
+
+    /// Sum of the powers of photons \[W\].
+    #[inline]
+    pub fn total_power(&self, photons: &[u32]) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &photon in photons {
+            let [r, g, b] = self.power[photon as usize];
+            sum += Rgb::new(f64::from(r), f64::from(g), f64::from(b));
+        }
+        sum
+    }
+
+    /// What is kept of each photon besides position and power.
+    #[inline]
+    pub fn columns(&self) -> Columns {
+        Columns {
+            direction: !self.direction.is_empty(),
+            sigma_t: !self.sigma_t.is_empty(),
+            order: !self.order.is_empty(),
+        }
     }
 
     /// Direction of travel, if kept.

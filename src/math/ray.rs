@@ -18,6 +18,7 @@ impl Ray {
     }
 
     /// The point at `distance`.
+    #[inline]
     pub fn at(&self, distance: f64) -> DVec3 {
         self.origin + self.direction * distance
     }
@@ -34,16 +35,19 @@ pub struct Span {
 
 impl Span {
     /// A span of a ray.
+    #[inline]
     pub fn new(start: f64, end: f64) -> Self {
         Self { start, end }
     }
 
     /// `end - start`.
+    #[inline]
     pub fn length(&self) -> f64 {
         self.end - self.start
     }
 
     /// The part common to both, or `None` where nothing of positive length is.
+    #[inline]
     pub fn intersect(&self, other: Span) -> Option<Span> {
         let span = Span::new(self.start.max(other.start), self.end.min(other.end));
         (span.end > span.start).then_some(span)

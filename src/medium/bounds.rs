@@ -37,6 +37,7 @@ pub struct Parallelepiped {
 
 impl Bounds {
     /// The part of the ray inside, from distance 0 on; `None` where the ray misses.
+    #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Span> {
         let ahead = Span::new(0.0, f64::INFINITY);
         match *self {
@@ -65,6 +66,7 @@ impl Bounds {
     }
 
     /// Whether a ball is wholly inside. Parallelepipeds, which only bound a grid, do not know.
+    #[inline]
     pub fn holds(&self, ball: Ball) -> bool {
         match *self {
             Self::Box { min, max } => {
@@ -127,6 +129,7 @@ impl Bounds {
 
     /// Volume \[m^3\] and, about the ball's centre, second moment of the part of a ball inside. Exact for
     /// boxes and spheres; a parallelepiped, which only bounds a grid, counts the whole ball.
+    #[inline]
     pub fn overlap(&self, ball: Ball) -> BallIntegral {
         match *self {
             Self::Box { min, max } => ball_in_box(ball, min, max),

@@ -78,6 +78,7 @@ impl BallMoments {
 
     /// Of the part of a ball inside a uniform medium, weighted by 1 - `falloff` (d / r)^2: exact where nothing is cut off,
     /// else of exact mass.
+    #[inline]
     pub fn inside(bounds: &Bounds, ball: Ball, turn: f64, falloff: f64) -> Self {
         let overlap = bounds.overlap(ball);
         let mass = overlap.mass - falloff * overlap.second_moment;

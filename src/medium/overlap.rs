@@ -24,6 +24,7 @@ pub struct BallIntegral {
 
 impl BallIntegral {
     /// A whole ball of weight 1.
+    #[inline]
     pub fn of_ball(radius: f64) -> Self {
         let mass = 4.0 / 3.0 * PI * radius * radius * radius;
         Self { mass, second_moment: 0.6 * mass }

@@ -73,9 +73,11 @@ pub fn trace_photons<E: Extinction>(
                 let end = ((share + 1) * SHARE).min(count);
                 let keep = Collisions { frame, extinction, photons: Vec::new() };
                 let mut path = Path::new(medium, extinction, settings, keep);
-                (share * SHARE..end)
-                    .filter_map(|index| emission.photon(before + index))
-                    .for_each(|photon| path.follow(photon));
+                for index in share * SHARE..end {
+                    if let Some(photon) = &emission.photon(before + index) {
+                        path.follow(photon);
+                    }
+                }
                 advanced(end - share * SHARE);
                 (path.keep.photons, path.balance)
             })
@@ -103,7 +105,7 @@ pub fn trace_paths<E: Extinction>(
     let keep = Collisions { frame, extinction, photons: Vec::new() };
     let mut path = Path::new(medium, extinction, settings, keep);
     let trace = |photon: Option<EmittedPhoton>| {
-        photon.into_iter().for_each(|photon| path.follow(photon));
+        photon.iter().for_each(|photon| path.follow(photon));
         std::mem::take(&mut path.keep.photons)
     };
     emitted.map(trace).collect()
@@ -130,10 +132,10 @@ pub fn trace_into<E: Extinction, K: Keep>(
             let mut unreported = 0;
             for number in (rays.start + first as u64..rays.end).step_by(step) {
                 if per_ray == 1 {
-                    emission.photon(number).into_iter().for_each(|photon| path.follow(photon));
+                    emission.photon(number).iter().for_each(|photon| path.follow(photon));
                 } else if let Some(ray) = emission.ray(number) {
                     (number * per_ray..(number + 1) * per_ray)
-                        .for_each(|index| path.follow(emission.photon_of(&ray, index)));
+                        .for_each(|index| path.follow(&emission.photon_of(&ray, index)));
                 }
                 unreported += per_ray;
                 if unreported >= SHARE {

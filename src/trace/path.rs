@@ -38,8 +38,9 @@ impl<'a, E: Extinction, K: Keep> Path<'a, E, K> {
     }
 
     /// Follows one photon from its light to its end.
-    pub fn follow(&mut self, photon: EmittedPhoton) {
-        let EmittedPhoton { mut ray, mut power, first_flight, mut random, .. } = photon;
+    pub fn follow(&mut self, photon: &EmittedPhoton) {
+        let EmittedPhoton { mut ray, mut power, first_flight, ref random, .. } = *photon;
+        let mut random = random.clone();
         let is_from_medium = photon.is_from_medium;
         let min_kept_order = if is_from_medium { 0 } else { self.settings.min_stored_order };
         self.balance.emitted += power;
@@ -109,7 +110,11 @@ impl<'a, E: Extinction, K: Keep> Path<'a, E, K> {
     }
 
     /// Applies the weight of a flight, which is 1 but in chromatic media.
+    #[inline]
     fn reweigh(&mut self, power: Rgb, weight: Rgb) -> Rgb {
+        if !E::IS_CHROMATIC {
+            return power;
+        }
         let weighted = power * weight;
         self.balance.resampled += power - weighted;
         weighted

@@ -94,9 +94,9 @@ impl Queries<'_> {
         let unit = map.frame().unit;
         let found = finder.find(place, wanted.unwrap_or(NonZeroUsize::MIN), self.reach);
         around.clear();
-        around.extend(found.photons.iter().map(|neighbor| FoundPhoton {
-            distance: f64::from(neighbor.distance_squared).sqrt() * unit,
-            power: f64::from(map.power(neighbor.photon)[0]),
+        around.extend(found.iter().map(|(photon, square)| FoundPhoton {
+            distance: f64::from(square).sqrt() * unit,
+            power: f64::from(map.power(photon)[0]),
         }));
         around.sort_unstable_by(|a, b| {
             a.distance.total_cmp(&b.distance).then(a.power.total_cmp(&b.power))

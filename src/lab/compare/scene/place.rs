@@ -157,8 +157,7 @@ fn photons_within(
     position: DVec3,
     radius: f64,
 ) -> Vec<(f32, u32)> {
-    let found = finder.within(position, radius);
-    found.iter().map(|neighbor| (neighbor.distance_squared, neighbor.photon)).collect()
+    finder.within(position, radius).iter().map(|(photon, square)| (square, photon)).collect()
 }
 
 /// Mean channel of a photon's power \[W\].
