@@ -14,7 +14,7 @@ use crate::cli::text_file::{write_json, write_text};
 pub fn draw(directory: &Path, seed: u64) -> Result<(), CliError> {
     let cannot = |source| CliError::Directory { path: directory.to_path_buf(), source };
     fs::create_dir_all(directory).map_err(cannot)?;
-    let studies = Studies::run(seed, 1.0, |model| say(&format!("{model}")))?;
+    let studies = Studies::run(seed, 1.0, say)?;
     let figures = figures(&studies);
     for figure in &figures {
         write_text(&directory.join(figure.file_name()), &figure.to_svg()?)?;
