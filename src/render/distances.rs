@@ -18,7 +18,7 @@ pub fn even_quantile(stratum: usize, phase: f64, count: usize) -> f64 {
 /// The same at `phase` of every other stratum and at 1 - phase of those between, so that what two strata miss of a slope cancels. Below 1.
 #[inline]
 pub fn mirrored_quantile(stratum: usize, phase: f64, count: usize) -> f64 {
-    let within = if stratum % 2 == 0 { phase } else { 1.0 - phase };
+    let within = if stratum.is_multiple_of(2) { phase } else { 1.0 - phase };
     ((stratum as f64 + within) / count as f64).min(1.0 - f64::EPSILON)
 }
 
