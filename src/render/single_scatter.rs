@@ -13,6 +13,9 @@ use crate::render::distances::{ByTransmittance, EquiAngular, even_quantile, mirr
 /// Opacity up to which a uniform medium's transmittance counts as smooth: an optical depth of 4.
 const SMOOTH_OPACITY: f64 = 0.98;
 
+/// Mean cosine beyond which a phase function is narrow.
+const PEAKED_COSINE: f64 = 0.5;
+
 /// One ray of which the single scattering is asked.
 pub struct ScatteringRay<'a, E> {
     /// The medium.
@@ -102,10 +105,10 @@ impl<E: Extinction> ScatteringRay<'_, E> {
         let even = E::IS_UNIFORM && by_transmittance.opacity() <= SMOOTH_OPACITY;
         let far = if even { 0 } else { samples / 2 };
         let near_light = samples - far;
-        let quantile = match light.1 {
-            Light::Spot(_) => even_quantile,
-            _ => mirrored_quantile,
-        };
+        // A cone or a narrow phase function makes a peak between ends that are alike.
+        let is_peaked = matches!(light.1, Light::Spot(_))
+            || self.medium.phase.mean_cosine().abs() > PEAKED_COSINE;
+        let quantile = if is_peaked { even_quantile } else { mirrored_quantile };
         let mut sum = Rgb::ZERO;
         for sample in 0..samples {
             let distance = if sample < near_light {
