@@ -5,7 +5,7 @@ use crate::film::PixelDepths;
 use crate::light::{Light, LightChoice, Shadows, transmittance_to};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
-use crate::render::distances::{ByTransmittance, mirrored_quantile};
+use crate::render::distances::{ByTransmittance, even_quantile};
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::ray_depths::ray_depths;
@@ -246,7 +246,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         let samples = self.scene.render.march_samples.min(self.most_samples[1]);
         let count = samples as f64;
         for stratum in 0..samples {
-            let u = mirrored_quantile(stratum, phase, samples);
+            let u = even_quantile(stratum, phase, samples);
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
