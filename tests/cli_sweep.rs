@@ -26,7 +26,7 @@ fn a_sweep_is_shown_and_written() {
     let svg = std::fs::read_to_string(work.path("a.svg")).unwrap();
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
     assert_eq!(svg.matches("<text").count(), svg.matches("</text>").count());
-    for label in ["Pareto front", "knn", "lattice to a target error", "reference path tracer"] {
+    for label in ["Pareto front", "knn", "rendered to a target error", "reference path tracer"] {
         assert!(svg.contains(label), "{label}");
     }
     // knn: photons x k; lattice: photons; a target; two of paths.

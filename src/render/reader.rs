@@ -2,10 +2,11 @@
 
 use crate::estimate::{Estimator, InScattered};
 use crate::film::PixelDepths;
+use crate::lattice::Lamps;
 use crate::light::{Light, LightChoice, Shadows, transmittance_to};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
-use crate::render::distances::{ByTransmittance, even_quantile};
+use crate::render::distances::{ByTransmittance, EquiAngular, even_quantile};
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::ray_depths::ray_depths;
@@ -245,15 +246,48 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         let Some(by_transmittance) = ByTransmittance::new(&self.profile, span) else { return };
         let samples = self.scene.render.march_samples.min(self.most_samples[1]);
         let count = samples as f64;
+        let lamps = self.scattered_light.lamps();
         for stratum in 0..samples {
             let u = even_quantile(stratum, phase, samples);
             let distance = by_transmittance.sample_distance(u, uniform(random));
             let place = ray.at(distance);
             let sigma_t = if E::IS_UNIFORM { self.extinction.sigma_t(place) } else { Rgb::ONE };
+            let share = lamps.map_or(1.0, |lamps| lamps.even_share(place));
             let weight = by_transmittance.scattering_weight(distance, sigma_t, count)
-                * self.extinction.albedo_at(&self.scene.medium, place);
+                * self.extinction.albedo_at(&self.scene.medium, place)
+                * share;
             let (towards, turn) = (-ray.direction, uniform(random));
             queries.push(PhotonQuery { place, towards, weight, turn, pixel });
+        }
+        if let Some(lamps) = lamps {
+            let samples = samples.div_ceil(2);
+            self.push_queries_near(lamps, (ray, span), samples, (pixel, phase), queries);
+        }
+    }
+
+    /// Queries for the lamps' own shares of the light, at equal angles seen from each that the ray passes near.
+    fn push_queries_near(
+        &self,
+        lamps: &Lamps,
+        (ray, span): (&Ray, Span),
+        samples: usize,
+        (pixel, phase): (u32, f64),
+        queries: &mut Vec<PhotonQuery>,
+    ) {
+        for (lamp, center, near) in lamps.near(ray, span) {
+            let equi_angular = EquiAngular::new(ray, near, center);
+            for stratum in 0..samples {
+                let distance = equi_angular.sample_distance(even_quantile(stratum, phase, samples));
+                let place = ray.at(distance);
+                let density = samples as f64 * equi_angular.pdf_distance(distance);
+                let share = lamps.own_share(lamp, place) / density;
+                let weight = exp(-self.profile.optical_depth(distance))
+                    * self.extinction.sigma_t(place)
+                    * self.extinction.albedo_at(&self.scene.medium, place)
+                    * share;
+                let towards = -ray.direction;
+                queries.push(PhotonQuery { place, towards, weight, turn: phase, pixel });
+            }
         }
     }
 
@@ -273,4 +307,60 @@ fn weighted(mut scattered: InScattered, query: &PhotonQuery) -> InScattered {
     scattered.single *= query.weight;
     scattered.multiple *= query.weight;
     scattered
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::lattice::LightLattice;
+    use crate::math::{DVec3, Stream};
+    use crate::medium::MediumExtinction;
+    use crate::render::lit_lattice::{self, ReadFrom};
+    use crate::render::scattered_light::LatticeReader;
+    use crate::render::{RenderReport, Unobserved};
+    use crate::scene::Overrides;
+
+    /// What is read on average along rays that pass lamps by far less than a cell is the integral of what the lattice holds, peaks and all.
+    #[test]
+    fn peaks_of_lamps_are_integrated_exactly() {
+        let text = "[camera]\nposition = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvertical_fov = 40.0\nresolution = [4, 4]\n\
+            [medium]\nkind = \"homogeneous\"\nbounds = { min = [-1.0, -1.0, -1.0], max = [1.0, 1.0, 1.0] }\nsigma_t = 1.5\nalbedo = 0.9\n\
+            [[light]]\nkind = \"point\"\nposition = [0.1, 0.2, 0.0]\nintensity = 1.0\n\
+            [[light]]\nkind = \"point\"\nposition = [0.1, 0.2, 0.09]\nintensity = 2.0\n";
+        let scene = Scene::from_text(text, Path::new("lamps.toml"), &Overrides::default()).unwrap();
+        let MediumExtinction::Uniform(fog) = &scene.medium.extinction else { panic!("no fog") };
+        let emission = lit_lattice::emission(&scene, fog, 20_000);
+        let wanted = (16, ReadFrom::Camera, LightChoice::All);
+        let mut report = RenderReport::default();
+        let lattice: LightLattice =
+            lit_lattice::trace(&scene, fog, &emission, wanted, &Unobserved, &mut report).unwrap();
+        let phase = scene.medium.phase;
+        let mut reader = Reader::new(&scene, fog, LatticeReader { lattice: &lattice, phase });
+        for offset in [0.002, 0.02, 0.08] {
+            let ray = Ray::new(DVec3::new(0.1 + offset, 0.2, 3.0), DVec3::NEG_Z);
+            let held = |t: f64| {
+                let light = lattice.scattered(ray.at(t), -ray.direction, phase).x;
+                0.9 * 1.5 * (-1.5 * (t - 2.0)).exp() * light
+            };
+            const STEPS: usize = 400_000;
+            let step = 2.0 / STEPS as f64;
+            let exact = (0..STEPS).map(|i| held(2.0 + (i as f64 + 0.5) * step)).sum::<f64>() * step;
+            let mut random = Stream::Experiment.random(31, 0);
+            const BATCHES: usize = 32;
+            let means: Vec<f64> = (0..BATCHES)
+                .map(|_| {
+                    let rays =
+                        (0..200).map(|_| reader.light_along(&ray, f64::INFINITY, &mut random));
+                    rays.map(|seen| seen.multiple_scatter.x).sum::<f64>() / 200.0
+                })
+                .collect();
+            let mean = means.iter().sum::<f64>() / BATCHES as f64;
+            let squares = means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>();
+            let error = (squares / (BATCHES * (BATCHES - 1)) as f64).sqrt();
+            let z = (mean - exact) / error;
+            assert!(z.abs() < 4.5 && error < 5e-3 * exact, "{offset}: {mean} {exact} {error}");
+        }
+    }
 }

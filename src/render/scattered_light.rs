@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::estimate::{Estimator, InScattered};
-use crate::lattice::LightLattice;
+use crate::lattice::{Lamps, LightLattice};
 use crate::math::{DVec3, Rgb, Stream};
 use crate::medium::{Extinction, Phase};
 use crate::reference::PathTracer;
@@ -32,6 +32,11 @@ pub trait ScatteredLight {
 
     /// Whether there are coarser cells to compare with.
     const HAS_COARSE: bool;
+
+    /// Lamps at whose peaks it is to be looked for apart.
+    fn lamps(&self) -> Option<&Lamps> {
+        None
+    }
 
     /// Light scattered at the query's place towards the camera, per sigma_s \[W/(m^2 sr)\]: not weighted.
     fn in_scattered(&mut self, query: &PhotonQuery) -> InScattered;
@@ -62,6 +67,10 @@ pub struct LatticeReader<'a> {
 impl ScatteredLight for LatticeReader<'_> {
     const ORDERED: bool = false;
     const HAS_COARSE: bool = true;
+
+    fn lamps(&self) -> Option<&Lamps> {
+        self.lattice.shape().lamps()
+    }
 
     fn in_scattered(&mut self, query: &PhotonQuery) -> InScattered {
         let multiple = self.lattice.scattered(query.place, query.towards, self.phase);

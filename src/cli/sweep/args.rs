@@ -11,8 +11,8 @@ use crate::cli::count::{parse_count, parse_resolution};
 use crate::cli::table_outputs::TableOutputs;
 
 const EXAMPLES: &str = "\
-One row is one setting. Modes: `knn` and `lattice` are one pass of so many photons, gathered so; `target` is a lattice until its
-own estimate of its error is low enough; `paths` is the reference path tracer. --k and --divisor are for knn, --lattice is for
+One row is one setting. Modes: `knn` and `lattice` are one pass of so many photons, gathered so; `target` is the scene as `render`
+plans it, until its own estimate of its error is low enough; `paths` is the reference path tracer. --k and --divisor are for knn, --lattice is for
 lattices; every combination of the values given is measured.
 
   error       root mean squared error of an image, the noise of the reference taken off in quadrature where it is known
@@ -84,7 +84,7 @@ pub struct SweepArguments {
     #[arg(long, value_name = "LIST", value_parser = parse_counts)]
     pub samples: Option<List<u64>>,
 
-    /// Relative errors that lattices are to reach; `none` leaves this curve out
+    /// Relative errors that the scene is rendered to; `none` leaves this curve out
     #[arg(long, value_name = "LIST", default_value = "0.1,0.05,0.02", value_parser = parse_errors)]
     pub target_error: List<f64>,
 

@@ -39,7 +39,7 @@ fn place(row: &SweepRow) -> (f64, f64) {
 
 fn label(row: &SweepRow) -> &'static str {
     match row.mode {
-        "target" => "lattice to a target error",
+        "target" => "rendered to a target error",
         "paths" => "reference path tracer",
         mode => mode,
     }

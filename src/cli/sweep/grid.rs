@@ -52,9 +52,8 @@ pub fn settings(arguments: &SweepArguments) -> Result<Vec<SweepSetting>, CliErro
             }
         }
         for &error in &arguments.target_error.0 {
-            let gather = Some("lattice".to_owned());
             let emission = emission.clone();
-            add(Mode::Target { error }, Overrides { emission, gather, ..Overrides::default() })?;
+            add(Mode::Target { error }, Overrides { emission, ..Overrides::default() })?;
         }
     }
     for &paths in &arguments.spp.0 {

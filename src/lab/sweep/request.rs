@@ -13,7 +13,7 @@ use crate::math::Stream;
 use crate::medium::Bounds;
 use crate::reference::{Limits, Unwatched, render_reference};
 use crate::render::RenderError;
-use crate::scene::Scene;
+use crate::scene::{RenderSettings, Scene};
 
 /// Most channels of all pixels of all runs of a setting: 4 bytes each.
 const MOST_CHANNELS: u128 = 250_000_000;
@@ -74,6 +74,7 @@ impl Sweep {
     ) -> Result<SweepTable, SweepError> {
         let [width, height] = [scene.camera.width, scene.camera.height];
         self.check(scene)?;
+        let planned = scene.render;
         let made;
         let known = match reference {
             Some(given) => given,
@@ -87,7 +88,13 @@ impl Sweep {
         let truth = Truth::new(known, [width, height])?;
         let mut rows = Vec::with_capacity(self.settings.len());
         for setting in &self.settings {
-            rows.push(self.measure(setting, scene, &truth, &processor_seconds, &mut advanced)?);
+            rows.push(self.measure(
+                setting,
+                (scene, planned),
+                &truth,
+                &processor_seconds,
+                &mut advanced,
+            )?);
         }
         mark_front(&mut rows);
         let noise = known.variance.as_ref().map(|_| truth.variance.sqrt() / truth.mean);
@@ -103,6 +110,11 @@ impl Sweep {
     fn check(&self, scene: &Scene) -> Result<(), SweepError> {
         if matches!(scene.medium.bounds, Bounds::Infinite) {
             return Err(RenderError::InfiniteMedium.into());
+        }
+        let needs_lattice =
+            |setting: &SweepSetting| matches!(setting, SweepSetting::Lattice { .. });
+        if scene.medium.shared_phase().is_none() && self.settings.iter().any(needs_lattice) {
+            return Err(RenderError::NoLattice.into());
         }
         if self.runs < 2 {
             return Err(SweepError::TooFewRuns { runs: self.runs });
@@ -125,7 +137,7 @@ impl Sweep {
     fn measure(
         &self,
         setting: &SweepSetting,
-        scene: &mut Scene,
+        (scene, planned): (&mut Scene, RenderSettings),
         truth: &Truth,
         processor_seconds: &impl Fn() -> Option<f64>,
         advanced: &mut impl FnMut(),
@@ -135,7 +147,7 @@ impl Sweep {
         let (mut seconds, mut estimated) = (Some(0.0), Some(0.0));
         for run in 0..self.runs {
             let started = processor_seconds();
-            let made = setting.make(scene, Stream::Experiment.hash(branch, run))?;
+            let made = setting.make(scene, planned, Stream::Experiment.hash(branch, run))?;
             let spent = started.zip(processor_seconds()).map(|(start, end)| end - start);
             seconds = seconds.zip(spent).map(|(sum, spent)| sum + spent);
             estimated = estimated.zip(made.estimated_error).map(|(sum, e)| sum + e * e);

@@ -9,7 +9,7 @@ use crate::lab::compare::emission_name;
 /// One setting: what it is, how far from the reference, and how long it takes. Errors are relative to the mean of the reference.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepRow {
-    /// `knn`, `lattice`, `target` (a lattice until its estimated error is reached) or `paths` (the reference path tracer).
+    /// `knn`, `lattice`, `target` (as planned, until the estimated error is reached) or `paths` (the reference path tracer).
     pub mode: &'static str,
     /// Photons emitted, where the setting says so.
     pub photons: Option<u64>,

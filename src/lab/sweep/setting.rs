@@ -6,7 +6,7 @@ use crate::estimate::Divisor;
 use crate::film::Film;
 use crate::reference::{Limits, Unwatched, render_reference};
 use crate::render::{Gather, RenderOptions, Unobserved, render};
-use crate::scene::Scene;
+use crate::scene::{RenderSettings, Scene};
 
 /// Most passes to a target: one that cannot be reached must end, too.
 const MOST_PASSES: u32 = 1 << 12;
@@ -38,7 +38,7 @@ pub enum SweepSetting {
         /// Rays a pixel.
         rays: usize,
     },
-    /// Passes of a lattice until the estimated error is reached; photons, cells and rays are the plan's.
+    /// Passes until the estimated error is reached; photons, cells, rays and where light is gathered from are the plan's.
     Target {
         /// Relative error to reach.
         error: f64,
@@ -70,8 +70,13 @@ impl SweepSetting {
         }
     }
 
-    /// Makes the image. The scene's settings are left as they were used.
-    pub(super) fn make(&self, scene: &mut Scene, seed: u64) -> Result<Made, SweepError> {
+    /// Makes the image; `planned` is how the scene itself would be rendered. The scene's settings are left as they were used.
+    pub(super) fn make(
+        &self,
+        scene: &mut Scene,
+        planned: RenderSettings,
+        seed: u64,
+    ) -> Result<Made, SweepError> {
         scene.photons.seed = seed;
         let mut options = RenderOptions::passes(1);
         match *self {
@@ -87,7 +92,7 @@ impl SweepSetting {
             Self::Target { error, emission } => {
                 scene.photons.emission = emission;
                 scene.is_photon_count_given = false;
-                (scene.render.gather, scene.render.lattice) = (Gather::Lattice, None);
+                scene.render = planned;
                 options.passes = MOST_PASSES;
                 options.target_error = Some(error);
             }
