@@ -65,6 +65,16 @@ impl Lamps {
         weight
     }
 
+    /// What is left of a peak at a place by the mean over a ball about it: that of 1 / d over a ball of radius r about a lamp is 3 / (2 r).
+    pub fn mean_share(&self, place: DVec3, ball_radius: f64) -> f64 {
+        let [nearest, reach] = [NEAREST, REACH].map(|cells| cells * self.edge);
+        let share = |lamp: &DVec3| {
+            let distance = place.distance(*lamp).max(nearest);
+            (distance / (2.0 / 3.0 * ball_radius).clamp(nearest, reach)).min(1.0)
+        };
+        self.lamps.iter().map(share).product()
+    }
+
     /// The share of light at a place that is no lamp's own: 1 but near lamps.
     #[inline]
     pub fn even_share(&self, place: DVec3) -> f64 {
@@ -149,6 +159,11 @@ mod tests {
         }
         assert_eq!(close.even_share(DVec3::new(0.3, 0.1, 0.2)), 1.0);
         assert!(close.own_share(1, DVec3::X * 0.46) > 0.1);
+        // The mean over a ball about a lamp, and about a place that is far from it.
+        for (distance, share) in [(0.0, 1e-7 / 0.02), (0.01, 0.5), (0.02, 1.0), (0.2, 1.0)] {
+            let found = close.mean_share(near + DVec3::X * distance, 0.03);
+            assert!((found / share - 1.0).abs() < 1e-12, "{distance}: {found}");
+        }
         let many: Vec<Light> = (0..9).map(|_| lamp(DVec3::ZERO, 1.0)).collect();
         assert!(Lamps::of(&many, LightChoice::All, &bounds, 0.1).is_none());
     }

@@ -61,10 +61,11 @@ impl LightLattice {
         self.at_level(0, place, towards, phase)
     }
 
-    /// Fluence at a place \[W/m^2\], of a lattice whose cells look at all directions alike.
+    /// Fluence about a place \[W/m^2\], of a lattice whose cells look at all directions alike: where a lamp makes a peak, the mean over a ball of that radius.
     #[inline]
-    pub fn fluence(&self, place: DVec3) -> Rgb {
-        self.at_level(0, place, DVec3::Z, Phase::Isotropic) / ISOTROPIC
+    pub fn fluence(&self, place: DVec3, ball_radius: f64) -> Rgb {
+        let share = self.shape().lamps().map_or(1.0, |lamps| lamps.mean_share(place, ball_radius));
+        self.at_level(0, place, DVec3::Z, Phase::Isotropic) * (share / ISOTROPIC)
     }
 
     /// [`LightLattice::scattered`] from the cells twice as long.

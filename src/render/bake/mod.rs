@@ -146,12 +146,12 @@ impl Baking<'_> {
         while !self.has_ended() {
             emission.reseed(pass_seed(scene.photons.seed, self.report.passes_done));
             let how = (resolution, ReadFrom::Fluence, LightChoice::All);
-            let report = &mut self.report;
+            let (report, ball_radius) = (&mut self.report, self.voxels.ball_radius());
             let lattice = lit_lattice::trace(scene, extinction, &emission, how, observer, report)?;
             self.add(&mut sums, || {
                 |voxel: Voxel, sum| match scene.medium.bounds.contains(voxel.middle) {
                     // Between cells that were sharpened it may read a little below 0.
-                    true => sum + lattice.fluence(voxel.middle).max(Rgb::ZERO),
+                    true => sum + lattice.fluence(voxel.middle, ball_radius).max(Rgb::ZERO),
                     false => sum,
                 }
             });
