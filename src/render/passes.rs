@@ -184,10 +184,10 @@ impl<'a, E: Extinction> Passes<'a, E> {
         report.error = Some(error);
         if let Some(halves) = probes.halves(film).filter(|_| filters) {
             let unfiltered = ErrorEstimate { bias: 0.0, ..error };
-            let filtered = halves.filtered(unfiltered, *filter_radius, probes.mean());
-            let ErrorEstimate { noise, bias } = filtered.error;
+            let chosen = halves.best_radius(unfiltered, *filter_radius, probes.mean());
+            let ErrorEstimate { noise, bias } = chosen.error;
             report.error = Some(ErrorEstimate { noise, bias: bias.hypot(error.bias) });
-            *filter_radius = filtered.radius;
+            *filter_radius = chosen.radius;
         }
         self.state.next_measure = self.state.report.passes_done + self.passes_to_measure();
     }
@@ -226,7 +226,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let RenderState { mut film, mut report, probes, filter_radius, .. } = self.state;
         let unfiltered = probes.error().map_or(0.0, |error| error.noise);
         let halves = probes.halves(&film).filter(|_| filters && filter_radius > 0);
-        let filtered = halves.map(|halves| halves.with_radius(filter_radius, probes.mean()));
+        let filtered = halves.map(|halves| halves.filtered(filter_radius, probes.mean()));
         if let Some(filtered) = filtered {
             // Pixel by pixel the filter's noise is not known: on the whole it is that much less.
             let ratio = (filtered.error.noise / unfiltered).powi(2).min(1.0);
@@ -234,7 +234,7 @@ impl<'a, E: Extinction> Passes<'a, E> {
                 pixel.multiple_scatter = multiple;
                 pixel.variance *= ratio;
             }
-            report.filter_radius = filtered.radius;
+            report.filter_radius = filter_radius;
         }
         Rendering { film, report }
     }

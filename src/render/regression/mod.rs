@@ -10,6 +10,7 @@
 //! single scattering, whose noise would else be in both. The radius is
 //! the one whose noise and bias are least together, so that it shrinks to none as passes are added.
 
+mod cells;
 mod fit;
 
 use std::ops::Range;
@@ -19,10 +20,11 @@ use rayon::prelude::*;
 use crate::film::{Film, Pixel};
 use crate::math::{Rgb, mean_channel};
 use crate::render::error_estimate::ErrorEstimate;
-use fit::{FeaturePixel, LIGHTS, LightFit, Moments, PixelLight};
+use cells::{CellImage, FineCells, cells};
+use fit::FeaturePixel;
 
-/// Radii of windows tried \[pixels\]; 0 is no filter.
-const RADII: [usize; 12] = [0, 1, 2, 5, 7, 10, 15, 20, 30, 40, 60, MAX_FILTER_RADIUS];
+/// Radii of windows tried \[pixels\]; 0 is no filter. Cells of all but the least are made of finer ones.
+const RADII: [usize; 11] = [0, 1, 2, 5, 7, 10, 20, 30, 40, 60, MAX_FILTER_RADIUS];
 
 /// The largest of them.
 pub const MAX_FILTER_RADIUS: usize = 80;
@@ -33,6 +35,9 @@ const TASK_ROWS: usize = 32;
 /// Edge of the blocks of pixels whose means count as independent \[pixels\].
 const BLOCK: usize = 16;
 
+/// Pixels by which an image's noise and bias are known well: of a larger one some rows are looked at.
+const ENOUGH_PIXELS: usize = 1 << 17;
+
 /// Pixels along an image for each of the radius that is tried first.
 const PIXELS_A_FIRST_RADIUS: usize = 64;
 
@@ -40,11 +45,6 @@ const PIXELS_A_FIRST_RADIUS: usize = 64;
 pub fn first_radius(width: usize, height: usize) -> usize {
     let most = width.max(height) / PIXELS_A_FIRST_RADIUS;
     RADII.into_iter().rfind(|radius| *radius <= most).unwrap_or(0).max(1)
-}
-
-/// Edge of the cells of a window \[pixels\], and cells from its middle to its edge: 3 x 3 pixels for radius 1, else 5 x 5 cells.
-fn cells(radius: usize) -> (usize, usize) {
-    if radius == 1 { (1, 1) } else { ((2 * radius).div_ceil(5), 2) }
 }
 
 /// Two independent halves of an image's passes, and how much each counts.
@@ -60,25 +60,37 @@ pub struct Halves<'a> {
     pub counts: [u32; 2],
 }
 
-/// A filtered image.
-#[derive(Clone, Debug)]
-pub struct Filtered {
+/// How wide to filter, and what comes of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
     /// Radius of the windows \[pixels\]; 0 where the filter does not pay.
     pub radius: usize,
     /// Noise, and bias of the filter alone, as shares of the image's mean.
     pub error: ErrorEstimate,
-    /// Multiple scattering of every pixel; empty where the radius is 0.
+}
+
+/// A filtered image.
+#[derive(Clone, Debug)]
+pub struct Filtered {
+    /// Noise, and bias of the filter alone, as shares of the image's mean.
+    pub error: ErrorEstimate,
+    /// Multiple scattering of every pixel.
     pub multiple: Vec<Rgb>,
 }
 
 impl Halves<'_> {
-    /// The image filtered with the radius of least error, looked for from `first` on; `unfiltered` is the error without.
-    pub fn filtered(&self, unfiltered: ErrorEstimate, first: usize, mean: f64) -> Filtered {
+    /// The radius of least error, looked for from `first` on; `unfiltered` is the error without.
+    pub fn best_radius(&self, unfiltered: ErrorEstimate, first: usize, mean: f64) -> Choice {
         let pixels = [0, 1].map(|half| self.pixels(half));
-        let none = || Filtered { radius: 0, error: unfiltered, multiple: Vec::new() };
+        let fine = self.images(&pixels, None, RADII[1]).map(FineCells::of);
+        let step = (self.film.pixels.len() / ENOUGH_PIXELS).max(1);
         let tried = |index: usize| match RADII[index] {
-            0 => none(),
-            radius => self.filter(&pixels, radius, mean),
+            0 => Choice { radius: 0, error: unfiltered },
+            radius => {
+                let images = self.images(&pixels, Some(&fine), radius);
+                let rows = |rows: Range<usize>| self.filter_rows(&images, rows, step).cost;
+                Choice { radius, error: self.error(&self.by_tasks(&images[0], rows), mean) }
+            }
         };
         let first = RADII.iter().position(|radius| *radius == first).unwrap_or(0);
         let mut best = tried(first);
@@ -88,59 +100,93 @@ impl Halves<'_> {
         best
     }
 
-    /// The image filtered with that radius, whatever comes of it.
-    pub fn with_radius(&self, radius: usize, mean: f64) -> Filtered {
-        self.filter(&[0, 1].map(|half| self.pixels(half)), radius, mean)
+    /// The image filtered with that radius.
+    pub fn filtered(&self, radius: usize, mean: f64) -> Filtered {
+        let pixels = [0, 1].map(|half| self.pixels(half));
+        let images = self.images(&pixels, None, radius);
+        let rows = self.by_tasks(&images[0], |rows| self.filter_rows(&images, rows, 1));
+        let (costs, multiple): (Vec<Cost>, Vec<Vec<Rgb>>) =
+            rows.into_iter().map(|rows| (rows.cost, rows.multiple)).unzip();
+        Filtered { error: self.error(&costs, mean), multiple: multiple.concat() }
     }
 
-    fn filter(&self, pixels: &[Vec<FeaturePixel>; 2], radius: usize, mean: f64) -> Filtered {
+    /// Both halves in the cells of windows of that radius.
+    fn images<'a>(
+        &self,
+        pixels: &'a [Vec<FeaturePixel>; 2],
+        fine: Option<&'a [FineCells; 2]>,
+        radius: usize,
+    ) -> [CellImage<'a>; 2] {
         let Film { width, height, .. } = *self.film;
         let (cell, reach) = cells(radius);
-        let task = TASK_ROWS * cell;
-        let halves =
-            pixels.each_ref().map(|pixels| CellImage { pixels, width, height, cell, reach });
-        let parts: Vec<FilteredRows> = (0..height.div_ceil(task))
-            .into_par_iter()
-            .map(|part| self.filter_rows(&halves, part * task..((part + 1) * task).min(height)))
-            .collect();
-        let mut multiple = Vec::with_capacity(width * height);
-        let [mut noise, mut bias, mut spread] = [0.0; 3];
-        for part in parts {
-            noise += part.noise;
-            bias += part.blocks.iter().sum::<f64>();
-            spread += part.blocks.iter().map(|block| block * block).sum::<f64>();
-            multiple.extend(part.multiple);
+        [0, 1].map(|half| CellImage {
+            pixels: &pixels[half],
+            fine: fine.map(|fine| &fine[half]),
+            width,
+            height,
+            cell,
+            reach,
+        })
+    }
+
+    /// What comes of the rows of every task, in their order.
+    fn by_tasks<T: Send>(
+        &self,
+        image: &CellImage,
+        of_rows: impl Fn(Range<usize>) -> T + Sync,
+    ) -> Vec<T> {
+        let (height, task) = (self.film.height, TASK_ROWS * image.cell);
+        let tasks = (0..height.div_ceil(task)).into_par_iter();
+        tasks.map(|part| of_rows(part * task..((part + 1) * task).min(height))).collect()
+    }
+
+    /// The error that rows tell.
+    fn error(&self, costs: &[Cost], mean: f64) -> ErrorEstimate {
+        let [mut noise, mut bias, mut spread, mut count] = [0.0; 4];
+        for cost in costs {
+            noise += cost.noise;
+            bias += cost.blocks.iter().sum::<f64>();
+            spread += cost.blocks.iter().map(|block| block * block).sum::<f64>();
+            count += cost.pixel_count as f64;
         }
-        let count = (width * height).max(1) as f64;
         let [a, b] = self.shares();
         // Of so many blocks the sum has that standard error. Part of it counts: the radius of least error is chosen by this very sum.
         let bias = (bias + 0.5 * spread.sqrt()).max(0.0);
+        let count = count.max(1.0);
         let noise = (noise * a * b / count).sqrt() / mean;
-        let error = ErrorEstimate { noise, bias: (bias / count).sqrt() / mean };
-        Filtered { radius, error, multiple }
+        ErrorEstimate { noise, bias: (bias / count).sqrt() / mean }
     }
 
-    /// Filters some rows of pixels.
-    fn filter_rows(&self, images: &[CellImage; 2], rows: Range<usize>) -> FilteredRows {
-        let [even, odd] = images.each_ref().map(|image| image.filter_rows(rows.clone()));
-        let (width, first) = (self.film.width, rows.start * self.film.width);
+    /// Filters every `step`th of some rows of pixels.
+    fn filter_rows(
+        &self,
+        images: &[CellImage; 2],
+        rows: Range<usize>,
+        step: usize,
+    ) -> FilteredRows {
+        let [even, odd] = images.each_ref().map(|image| image.filter_rows(rows.clone(), step));
+        let width = self.film.width;
         let columns = width.div_ceil(BLOCK);
-        let mut blocks = vec![0.0; columns * rows.len().div_ceil(BLOCK)];
-        let mut noise = 0.0;
+        let mut cost = Cost {
+            blocks: vec![0.0; columns * rows.len().div_ceil(BLOCK)],
+            noise: 0.0,
+            pixel_count: even.len(),
+        };
         let mut multiple = Vec::with_capacity(even.len());
         let [a, b] = self.shares();
         for (index, (even, odd)) in even.into_iter().zip(odd).enumerate() {
             let smooth = [even, odd].map(Rgb::from_array);
-            let halves = self.multiple.map(|half| half[first + index]);
-            let [radiance_even, radiance_odd] = self.radiance.map(|half| half[first + index]);
+            let (x, y) = (index % width, rows.start + index / width * step);
+            let halves = self.multiple.map(|half| half[y * width + x]);
+            let [radiance_even, radiance_odd] = self.radiance.map(|half| half[y * width + x]);
             let [residual_even, residual_odd] = [0, 1].map(|half| smooth[half] - halves[half]);
             let difference = radiance_even - radiance_odd + residual_even - residual_odd;
-            noise += mean_channel(difference * difference);
-            blocks[index / width / BLOCK * columns + index % width / BLOCK] +=
+            cost.noise += mean_channel(difference * difference);
+            cost.blocks[(y - rows.start) / BLOCK * columns + x / BLOCK] +=
                 mean_channel(residual_even * residual_odd);
             multiple.push((smooth[0] * a + smooth[1] * b).max(Rgb::ZERO));
         }
-        FilteredRows { noise, blocks, multiple }
+        FilteredRows { cost, multiple }
     }
 
     /// Shares of the halves in the image.
@@ -161,8 +207,8 @@ impl Halves<'_> {
     }
 }
 
-/// Takes the next image as long as its error is less; whether any was.
-fn improve(best: &mut Filtered, others: impl Iterator<Item = Filtered>) -> bool {
+/// Takes the next choice as long as its error is less; whether any was.
+fn improve(best: &mut Choice, others: impl Iterator<Item = Choice>) -> bool {
     let mut improved = false;
     for other in others {
         if other.error.total() >= best.error.total() {
@@ -173,133 +219,21 @@ fn improve(best: &mut Filtered, others: impl Iterator<Item = Filtered>) -> bool 
     improved
 }
 
-/// Some filtered rows of pixels.
-struct FilteredRows {
+/// What filtering some rows of pixels costs.
+struct Cost {
     /// Sum of squared differences of the halves, mean channel.
     noise: f64,
     /// Sum over each block of what both halves were changed by, multiplied.
     blocks: Vec<f64>,
+    /// Pixels looked at.
+    pixel_count: usize,
+}
+
+/// Some filtered rows of pixels.
+struct FilteredRows {
+    cost: Cost,
     /// Multiple scattering of their pixels.
     multiple: Vec<Rgb>,
-}
-
-/// A half's image in cells of pixels, of which the last may be cut short.
-struct CellImage<'a> {
-    pixels: &'a [FeaturePixel],
-    width: usize,
-    height: usize,
-    /// Edge of the cells \[pixels\].
-    cell: usize,
-    /// Cells from the middle of a window to its edge.
-    reach: usize,
-}
-
-impl CellImage<'_> {
-    /// Light of the pixels of some rows, from the fits of the cells around.
-    fn filter_rows(&self, rows: Range<usize>) -> Vec<PixelLight> {
-        let Self { width, height, cell, .. } = *self;
-        let columns = width.div_ceil(cell);
-        let cell_rows = height.div_ceil(cell);
-        let first_row = (rows.start / cell).saturating_sub(1);
-        let fits = self.fits(first_row..(rows.end.div_ceil(cell) + 1).min(cell_rows));
-        let mut filtered = Vec::with_capacity(rows.len() * width);
-        for y in rows {
-            let [above, below] = self.nearest(y, cell_rows);
-            let t = self.blend(y, above, below);
-            let heights = [above, below].map(|row| y as f64 - self.middle(row));
-            let [above, below] = [above, below].map(|row| (row - first_row) * columns);
-            let blended: Vec<LightFit> = (0..columns)
-                .map(|x| LightFit::blended(&fits[above + x], &fits[below + x], t, heights))
-                .collect();
-            for (x, pixel) in self.pixels[y * width..(y + 1) * width].iter().enumerate() {
-                let nearest = self.nearest(x, columns);
-                let t = self.blend(x, nearest[0], nearest[1]);
-                let mut light = [0.0; LIGHTS];
-                for (column, share) in nearest.into_iter().zip([1.0 - t, t]) {
-                    let from_middle = x as f64 - self.middle(column);
-                    blended[column].add_light(&mut light, share, from_middle, pixel);
-                }
-                filtered.push(light);
-            }
-        }
-        filtered
-    }
-
-    /// The middle of a row or column of cells \[pixels\].
-    fn middle(&self, cell: usize) -> f64 {
-        (cell as f64 + 0.5) * self.cell as f64 - 0.5
-    }
-
-    /// The cells whose middles lie on either side of a pixel, along one axis; one twice at the ends and where it is the pixel itself.
-    fn nearest(&self, pixel: usize, count: usize) -> [usize; 2] {
-        let own = pixel / self.cell;
-        match (pixel as f64).total_cmp(&self.middle(own)) {
-            std::cmp::Ordering::Less => [own.saturating_sub(1), own],
-            std::cmp::Ordering::Equal => [own; 2],
-            std::cmp::Ordering::Greater => [own, (own + 1).min(count - 1)],
-        }
-    }
-
-    /// How far a pixel lies from the middle of one of its nearest cells towards that of the other, as a share.
-    fn blend(&self, pixel: usize, one: usize, other: usize) -> f64 {
-        match one == other {
-            true => 0.0,
-            false => (pixel as f64 - self.middle(one)) / self.cell as f64,
-        }
-    }
-
-    /// The fits of some rows of cells.
-    fn fits(&self, rows: Range<usize>) -> Vec<LightFit> {
-        let columns = self.width.div_ceil(self.cell);
-        let cell_rows = self.height.div_ceil(self.cell);
-        let edge = self.cell as f64;
-        let near = |middle: usize, count: usize| {
-            middle.saturating_sub(self.reach)..(middle + self.reach + 1).min(count)
-        };
-        let first = rows.start.saturating_sub(self.reach);
-        let last = (rows.end + self.reach).min(cell_rows);
-        // Sums over the cells of a window's row, from the cell in the middle of it.
-        let along: Vec<Moments> = (first..last)
-            .flat_map(|row| {
-                let own = self.moments(row);
-                (0..columns).map(move |middle| {
-                    let mut sum = Moments::default();
-                    for column in near(middle, columns) {
-                        sum.add_moved(&own[column], 0, (column as f64 - middle as f64) * edge);
-                    }
-                    sum
-                })
-            })
-            .collect();
-        let fit = |row: usize, column: usize| {
-            let mut sum = Moments::default();
-            for other in near(row, cell_rows) {
-                let moments = &along[(other - first) * columns + column];
-                sum.add_moved(moments, 1, (other as f64 - row as f64) * edge);
-            }
-            sum.fit()
-        };
-        rows.flat_map(|row| (0..columns).map(move |column| (row, column)))
-            .map(|(row, column)| fit(row, column))
-            .collect()
-    }
-
-    /// The sums of the cells of a row, each from its middle.
-    fn moments(&self, row: usize) -> Vec<Moments> {
-        let Self { pixels, width, height, cell, .. } = *self;
-        let mut row_moments = vec![Moments::default(); width.div_ceil(cell)];
-        for y in row * cell..((row + 1) * cell).min(height) {
-            let dy = y as f64 - self.middle(row);
-            let cells = pixels[y * width..(y + 1) * width].chunks(cell);
-            for ((column, cell), moments) in cells.enumerate().zip(&mut row_moments) {
-                for (x, pixel) in cell.iter().enumerate() {
-                    let dx = (column * self.cell + x) as f64 - self.middle(column);
-                    moments.add_pixel(dx, dy, pixel);
-                }
-            }
-        }
-        row_moments
-    }
 }
 
 #[cfg(test)]
@@ -340,12 +274,12 @@ mod tests {
         let (still, noisy) = (probes([&exact, &exact]), probes(noisy.each_ref()));
         let (still, halves) = (still.halves(&exact).unwrap(), noisy.halves(&exact).unwrap());
         for radius in [2, 5] {
-            let passed = still.with_radius(radius, 2.5);
+            let passed = still.filtered(radius, 2.5);
             let largest = passed.multiple.iter().zip(&exact.pixels).fold(0.0, |largest, (f, p)| {
                 (*f - p.multiple_scatter).abs().max_element().max(largest)
             });
             assert!(largest < 5e-3, "{radius}: {largest}");
-            let filtered = halves.with_radius(radius, 1.0);
+            let filtered = halves.filtered(radius, 1.0);
             let squares = filtered.multiple.iter().zip(&exact.pixels).map(|(f, p)| {
                 let error = *f - p.multiple_scatter;
                 mean_channel(error * error)
@@ -378,14 +312,14 @@ mod tests {
             let probes = probes(noisy.each_ref());
             let halves = probes.halves(&exact).unwrap();
             let raw = noise * (2.0f64 / 3.0).sqrt() / 2f64.sqrt();
-            let chosen = halves.filtered(ErrorEstimate { noise: raw, bias: 0.0 }, 2, 1.0);
+            let chosen = halves.best_radius(ErrorEstimate { noise: raw, bias: 0.0 }, 2, 1.0);
             assert!(chosen.radius <= largest, "{noise}: {}", chosen.radius);
             if chosen.radius > 0 {
-                let error = true_error(&chosen);
+                let error = true_error(&halves.filtered(chosen.radius, 1.0));
                 let ratio = chosen.error.total() / error;
                 assert!((0.8..1.4).contains(&ratio), "{noise}: {ratio}");
                 for radius in [1, 2, 5, 7] {
-                    let other = true_error(&halves.with_radius(radius, 1.0));
+                    let other = true_error(&halves.filtered(radius, 1.0));
                     assert!(error < 1.25 * other, "{noise}: {} {radius}", chosen.radius);
                 }
                 assert!(error < raw, "{noise}: {error} {raw}");
