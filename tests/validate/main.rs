@@ -1,7 +1,7 @@
 //! The renderer against exact answers, its samplers against their densities, hard cases, grids against numbers, and rates of
 //! convergence.
 
-#[path = "../cli_run/mod.rs"]
+#[path = "../cli/run.rs"]
 mod cli_run;
 mod command;
 mod constant_grid;
@@ -10,5 +10,5 @@ mod emission_samplers;
 mod hard_cases;
 mod quick;
 mod samplers;
-#[path = "../transport_support/mod.rs"]
+#[path = "../support/transport.rs"]
 mod transport_support;

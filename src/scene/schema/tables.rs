@@ -1,6 +1,6 @@
 //! Every key of a scene file, section by section, in the order in which a file is written.
 //!
-//! `tests/scene_schema.rs` holds these tables against the reader (`scene/file/`): its keys, words, defaults and limits.
+//! `tests/scene/schema/` holds these tables against the reader (`scene/file/`): its keys, words, defaults and limits.
 
 use super::key::{
     ANY, Key, Kind, Limits, POSITIVE, POSITIVE_OR_0, Repeats, SHARE, Section, Variant, key, kind,

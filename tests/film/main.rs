@@ -1,0 +1,5 @@
+//! Images and their files.
+
+mod compare;
+mod exr;
+mod files;
