@@ -91,13 +91,14 @@ fn trace(by: &str, rounds: u32) -> Option<f64> {
 /// Tracing in a box of grey isotropic fog, and nothing else. Photons are emitted as by the program.
 fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
     let mut photons = Vec::new();
-    let (mut absorbed, mut escaped) = (Rgb::ZERO, Rgb::ZERO);
+    let (mut emitted, mut absorbed, mut escaped) = (Rgb::ZERO, Rgb::ZERO, Rgb::ZERO);
     for index in 0..emission.count() {
         let Some(EmittedPhoton { mut ray, mut power, first_flight, mut random, .. }) =
             emission.photon(index)
         else {
             continue;
         };
+        emitted += power;
         for order in 0.. {
             let Some(span) = span_in_box(&ray) else { break };
             let u = if order == 0 {
@@ -147,7 +148,7 @@ fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
         }
         escaped += power;
     }
-    std::hint::black_box((absorbed, escaped));
+    std::hint::black_box((emitted, absorbed, escaped));
     photons
 }
 
