@@ -42,8 +42,8 @@ impl Bounds {
     /// The part of the ray inside, from distance 0 on; `None` where the ray misses.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Span> {
-        match *self {
-            Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max)?.intersect(AHEAD),
+        match self {
+            Self::Box { min, max } => slabs(ray.origin, ray.direction, *min, *max),
             _ => self.intersect_others(ray),
         }
     }
@@ -52,12 +52,12 @@ impl Bounds {
     #[inline(never)]
     fn intersect_others(&self, ray: &Ray) -> Option<Span> {
         match *self {
-            Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max)?.intersect(AHEAD),
+            Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max),
             Self::Sphere { center, radius } => sphere_chord(ray, center, radius)?.intersect(AHEAD),
             Self::Parallelepiped(shape) => {
                 let origin = shape.inverse * (ray.origin - shape.corner);
                 let direction = shape.inverse * ray.direction;
-                slabs(origin, direction, DVec3::ZERO, DVec3::ONE)?.intersect(AHEAD)
+                slabs(origin, direction, DVec3::ZERO, DVec3::ONE)
             }
             Self::Infinite => Some(AHEAD),
         }
@@ -195,7 +195,7 @@ pub struct Face {
     pub area_normal: DVec3,
 }
 
-/// The distances at which a line crosses an axis-aligned box.
+/// The distances at which a half line crosses an axis-aligned box.
 #[inline]
 fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
     let inverse = direction.recip();
@@ -206,7 +206,7 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
     let ascends = direction.cmpgt(DVec3::ZERO);
     let near = (DVec3::select(ascends, min, max) - origin) * inverse;
     let far = (DVec3::select(ascends, max, min) - origin) * inverse;
-    let span = Span::new(near.max_element(), far.min_element());
+    let span = Span::new(near.max_element().max(0.0), far.min_element());
     (span.end > span.start).then_some(span)
 }
 
@@ -214,7 +214,7 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
 /// comparison: 0 times infinity must not arise.
 #[cold]
 fn slabs_with_parallels(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
-    let mut span = Span::new(f64::NEG_INFINITY, f64::INFINITY);
+    let mut span = AHEAD;
     for axis in 0..3 {
         let inverse = 1.0 / direction[axis];
         if !inverse.is_finite() {
