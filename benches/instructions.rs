@@ -6,6 +6,7 @@
 
 mod clouds;
 
+use std::hint::black_box;
 use std::num::NonZeroUsize;
 
 use clouds::Cloud;
@@ -21,8 +22,6 @@ use photonvdb::medium::{
 use photonvdb::trace::{MapFrame, Photon, TraceSettings, trace_photons};
 
 const FOG: UniformExtinction = UniformExtinction { sigma_t: 1.0 };
-const ALBEDO: Rgb = Rgb::splat(0.9);
-const BOX: [DVec3; 2] = [DVec3::NEG_ONE, DVec3::ONE];
 const MAX_ORDER: u32 = 1000;
 const TRACED: u64 = 20_000;
 const MAPPED: u32 = 200_000;
@@ -55,7 +54,7 @@ fn fog(bounds: Bounds) -> Medium {
     Medium {
         bounds,
         extinction: MediumExtinction::Uniform(FOG),
-        albedo: ALBEDO,
+        albedo: Rgb::splat(0.9),
         color: None,
         emissivity: None,
         phase: Phase::Isotropic,
@@ -64,7 +63,7 @@ fn fog(bounds: Bounds) -> Medium {
 
 /// Traces, and sums what was stored.
 fn trace(by: &str, rounds: u32) -> Option<f64> {
-    let medium = fog(Bounds::Box { min: BOX[0], max: BOX[1] });
+    let medium = fog(Bounds::Box { min: DVec3::NEG_ONE, max: DVec3::ONE });
     let lamp = PointLight { position: DVec3::new(0.3, 0.4, 0.2), intensity: Rgb::ONE };
     let lights = [Light::Point(lamp)];
     let opacity = |ray: &Ray| {
@@ -80,7 +79,7 @@ fn trace(by: &str, rounds: u32) -> Option<f64> {
         emission.reseed(u64::from(round));
         let photons = match by {
             "program" => trace_photons(&emission, &medium, &FOG, frame, settings, |_| ()).photons,
-            "loop" => trace_by_loop(&emission, frame),
+            "loop" => trace_by_loop(&emission, frame, &black_box(BOX_OF_FOG)),
             _ => return None,
         };
         sum += photons.iter().map(|p| f64::from(p.power[0] + p.position[0])).sum::<f64>();
@@ -88,20 +87,32 @@ fn trace(by: &str, rounds: u32) -> Option<f64> {
     Some(sum)
 }
 
+/// What a scene file says of fog in a box.
+struct BoxOfFog {
+    min: DVec3,
+    max: DVec3,
+    sigma_t: f64,
+    albedo: Rgb,
+}
+
+const BOX_OF_FOG: BoxOfFog =
+    BoxOfFog { min: DVec3::NEG_ONE, max: DVec3::ONE, sigma_t: 1.0, albedo: Rgb::splat(0.9) };
+
 /// Tracing in a box of grey isotropic fog, and nothing else. Photons are emitted as by the program.
-fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
+fn trace_by_loop(emission: &Emission, frame: MapFrame, fog: &BoxOfFog) -> Vec<Photon> {
     let mut photons = Vec::new();
-    let (mut absorbed, mut escaped) = (Rgb::ZERO, Rgb::ZERO);
+    let (mut emitted, mut absorbed, mut escaped) = (Rgb::ZERO, Rgb::ZERO, Rgb::ZERO);
     for index in 0..emission.count() {
         let Some(EmittedPhoton { mut ray, mut power, first_flight, mut random, .. }) =
             emission.photon(index)
         else {
             continue;
         };
+        emitted += power;
         for order in 0.. {
-            let Some(span) = span_in_box(&ray) else { break };
+            let Some(span) = span_in_box(&ray, fog) else { break };
             let u = if order == 0 {
-                let opacity = -(-FOG.sigma_t * span.length()).exp_m1();
+                let opacity = -(-fog.sigma_t * span.length()).exp_m1();
                 let probability = (opacity * first_flight.boost).min(1.0);
                 if first_flight.u >= probability {
                     break;
@@ -113,7 +124,7 @@ fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
             } else {
                 uniform(&mut random)
             };
-            let distance = span.start - (-u).ln_1p() / FOG.sigma_t;
+            let distance = span.start - (-u).ln_1p() / fog.sigma_t;
             if distance >= span.end {
                 break;
             }
@@ -130,7 +141,7 @@ fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
             if order >= MAX_ORDER {
                 break;
             }
-            let scattered = power * ALBEDO;
+            let scattered = power * fog.albedo;
             let survival = scattered.max_element() / power.max_element();
             if uniform(&mut random) >= survival {
                 absorbed += power;
@@ -147,15 +158,19 @@ fn trace_by_loop(emission: &Emission, frame: MapFrame) -> Vec<Photon> {
         }
         escaped += power;
     }
-    std::hint::black_box((absorbed, escaped));
+    black_box((emitted, absorbed, escaped));
     photons
 }
 
-fn span_in_box(ray: &Ray) -> Option<Span> {
+/// Rays parallel to faces, which hardly occur, are left to the program.
+fn span_in_box(ray: &Ray, fog: &BoxOfFog) -> Option<Span> {
     let inverse = ray.direction.recip();
+    if !inverse.is_finite() {
+        return Bounds::Box { min: fog.min, max: fog.max }.intersect(ray);
+    }
     let ascends = ray.direction.cmpgt(DVec3::ZERO);
-    let near = (DVec3::select(ascends, BOX[0], BOX[1]) - ray.origin) * inverse;
-    let far = (DVec3::select(ascends, BOX[1], BOX[0]) - ray.origin) * inverse;
+    let near = (DVec3::select(ascends, fog.min, fog.max) - ray.origin) * inverse;
+    let far = (DVec3::select(ascends, fog.max, fog.min) - ray.origin) * inverse;
     let span = Span::new(near.max_element().max(0.0), far.min_element());
     (span.end > span.start).then_some(span)
 }
@@ -181,8 +196,8 @@ fn gather(cloud: &str, by: &str, k: &str, rounds: u32) -> Option<f64> {
     let mut sum = 0.0;
     for &place in (0..rounds).flat_map(|_| &places) {
         sum += match by {
-            "program" => estimator.in_scattered(place, DVec3::Z, 0.5).multiple.x,
-            "loop" => gather_by_loop(&mut finder, &map, k, place).x,
+            "program" => black_box(estimator.in_scattered(place, DVec3::Z, 0.5)).multiple.x,
+            "loop" => black_box(gather_by_loop(&mut finder, &map, k, place)).x,
             "radius" => f64::from(finder.find(place, k, f64::INFINITY).radius),
             "kiddo" => {
                 let query = place.as_vec3().to_array();

@@ -147,11 +147,17 @@ impl<'a, E: Extinction> Estimator<'a, E> {
             let channel = |c: usize| over_scalar(sum[c], moments.mass * ceiling[c]);
             Rgb::new(channel(0), channel(1), channel(2))
         };
+        let Columns { direction, sigma_t, order } = map.columns();
         let is_even = options.kernel == Kernel::Constant && moments.tilt == DVec3::ZERO;
-        if is_even && map.columns() == Columns::default() {
-            // All that is known of a photon besides its place is its power, which all of them are seen by alike.
-            let sum = equally_weighted(map, &nearest, *options);
-            gathered.multiple = per_fluence(seen(nearest.photons[0], sum, 1.0));
+        if is_even && !sigma_t && !order {
+            gathered.multiple = per_fluence(if direction {
+                let light = |photon| seen(photon, rgb(map.power(photon)), 1.0);
+                let sum = |inner: &[u32]| inner.iter().map(|&photon| light(photon)).sum();
+                shared(&nearest, *options, sum, light)
+            } else {
+                // Photons are seen by their power alone.
+                seen(nearest.photons[0], equally_weighted(map, &nearest, *options), 1.0)
+            });
             return gathered;
         }
         let to_offset = 1.0 / f64::from(nearest.radius);
@@ -191,10 +197,22 @@ fn ceiling(map: &PhotonMap, nearest: &Nearest, sigma_t: Rgb) -> f64 {
 /// The power of the photons, where the kernel weighs them all alike.
 #[inline]
 fn equally_weighted(map: &PhotonMap, nearest: &Nearest, options: EstimateOptions) -> Rgb {
-    let Some((&last, inner)) = nearest.photons.split_last() else { return Rgb::ZERO };
+    let last = |photon| rgb(map.power(photon));
+    shared(nearest, options, |inner| map.total_power(inner), last)
+}
+
+/// What the divisor leaves of the `sum` over all photons but the last, and of the last one.
+#[inline]
+fn shared(
+    nearest: &Nearest,
+    options: EstimateOptions,
+    sum: impl Fn(&[u32]) -> Rgb,
+    last: impl Fn(u32) -> Rgb,
+) -> Rgb {
+    let Some((&farthest, inner)) = nearest.photons.split_last() else { return Rgb::ZERO };
     let shares =
         if nearest.complete { Shares::of(options.constant, options.k) } else { Shares::FULL };
-    map.total_power(inner) * shares.inner + rgb(map.power(last)) * shares.last
+    sum(inner) * shares.inner + last(farthest) * shares.last
 }
 
 /// Calls `add` with each photon and its weight: the kernel's, times what the divisor leaves of it.

@@ -119,8 +119,8 @@ impl PhotonMap {
         self.power[photon as usize]
     }
 
-    /// Sum of the powers of photons \[W\].
-    #[inline]
+    /// Sum of the powers of photons \[W\]. Apart, where the loop has all registers.
+    #[inline(never)]
     pub fn total_power(&self, photons: &[u32]) -> Rgb {
         let mut sum = Rgb::ZERO;
         for &photon in photons {

@@ -26,6 +26,9 @@ pub enum Bounds {
     Infinite,
 }
 
+/// The part of a ray that starts with it.
+const AHEAD: Span = Span { start: 0.0, end: f64::INFINITY };
+
 /// The points `corner + a edges[0] + b edges[1] + c edges[2]` with a, b, c in \[0, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parallelepiped {
@@ -39,16 +42,24 @@ impl Bounds {
     /// The part of the ray inside, from distance 0 on; `None` where the ray misses.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Span> {
-        let ahead = Span::new(0.0, f64::INFINITY);
+        match self {
+            Self::Box { min, max } => slabs(ray.origin, ray.direction, *min, *max),
+            _ => self.intersect_others(ray),
+        }
+    }
+
+    /// Apart, so that boxes compile as if there were no others.
+    #[inline(never)]
+    fn intersect_others(&self, ray: &Ray) -> Option<Span> {
         match *self {
-            Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max)?.intersect(ahead),
-            Self::Sphere { center, radius } => sphere_chord(ray, center, radius)?.intersect(ahead),
+            Self::Box { min, max } => slabs(ray.origin, ray.direction, min, max),
+            Self::Sphere { center, radius } => sphere_chord(ray, center, radius)?.intersect(AHEAD),
             Self::Parallelepiped(shape) => {
                 let origin = shape.inverse * (ray.origin - shape.corner);
                 let direction = shape.inverse * ray.direction;
-                slabs(origin, direction, DVec3::ZERO, DVec3::ONE)?.intersect(ahead)
+                slabs(origin, direction, DVec3::ZERO, DVec3::ONE)
             }
-            Self::Infinite => Some(ahead),
+            Self::Infinite => Some(AHEAD),
         }
     }
 
@@ -184,7 +195,7 @@ pub struct Face {
     pub area_normal: DVec3,
 }
 
-/// The distances at which a line crosses an axis-aligned box.
+/// The distances at which a half line crosses an axis-aligned box.
 #[inline]
 fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
     let inverse = direction.recip();
@@ -195,7 +206,7 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
     let ascends = direction.cmpgt(DVec3::ZERO);
     let near = (DVec3::select(ascends, min, max) - origin) * inverse;
     let far = (DVec3::select(ascends, max, min) - origin) * inverse;
-    let span = Span::new(near.max_element(), far.min_element());
+    let span = Span::new(near.max_element().max(0.0), far.min_element());
     (span.end > span.start).then_some(span)
 }
 
@@ -203,7 +214,7 @@ fn slabs(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span
 /// comparison: 0 times infinity must not arise.
 #[cold]
 fn slabs_with_parallels(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<Span> {
-    let mut span = Span::new(f64::NEG_INFINITY, f64::INFINITY);
+    let mut span = AHEAD;
     for axis in 0..3 {
         let inverse = 1.0 / direction[axis];
         if !inverse.is_finite() {

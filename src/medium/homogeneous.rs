@@ -37,6 +37,12 @@ impl Extinction for UniformExtinction {
         Rgb::splat(uniform_depth(self.sigma_t, span.length()))
     }
 
+    /// The same in every channel, whatever the power.
+    #[inline]
+    fn opacity(&self, _ray: &Ray, span: Span, _power: Rgb) -> f64 {
+        -(-uniform_depth(self.sigma_t, span.length())).exp_m1()
+    }
+
     #[inline]
     fn sample_flight(&self, ray: &Ray, span: Span, power: Rgb, random: &mut Random) -> Flight {
         self.invert_flight(ray, span, power, uniform(random))

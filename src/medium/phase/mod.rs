@@ -110,7 +110,7 @@ impl Phase {
     /// Draws the direction after scattering, with density [`Phase::density`]; `direction` is the
     /// direction of travel before.
     #[inline]
-    pub fn sample_direction(self, direction: DVec3, random: &mut impl Rng) -> DVec3 {
+    pub fn sample_direction(self, direction: DVec3, random: &mut (impl Rng + Clone)) -> DVec3 {
         let cosine = match self {
             Self::Isotropic => {
                 let t = 2.0 * uniform(random) - 1.0;
@@ -121,7 +121,13 @@ impl Phase {
             Self::HenyeyGreenstein { g } => {
                 lobe::henyey_greenstein_cosine(g, 2.0 * uniform(random) - 1.0)
             }
-            lobes => lobes.sample_cosine_of_lobes(random),
+            lobes => {
+                // A copy: what is called apart needs its generator in memory, the others may keep theirs in registers.
+                let mut copy = random.clone();
+                let cosine = lobes.sample_cosine_of_lobes(&mut copy);
+                *random = copy;
+                cosine
+            }
         };
         let phi = 2.0 * PI * uniform(random);
         let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
