@@ -15,6 +15,17 @@ const PROBE_OFFSET: usize = 1;
 /// Pixels between two that are probed, along both axes.
 const PROBE_STEP: usize = 4;
 
+/// Passes from which the error is believed in: of small images, and of those with more than [`MANY_PIXELS`].
+const FEWEST_PASSES: [u32; 2] = [4, 2];
+
+/// Pixels whose mean square is as good as known from one pass in each half.
+const MANY_PIXELS: usize = 1 << 17;
+
+/// Passes from which the error of an image of so many pixels is believed in.
+pub fn fewest_passes(pixels: usize) -> u32 {
+    FEWEST_PASSES[usize::from(pixels >= MANY_PIXELS)]
+}
+
 /// Whether a pixel is probed for bias.
 pub fn is_probed(x: usize, y: usize) -> bool {
     x % PROBE_STEP == PROBE_OFFSET && y % PROBE_STEP == PROBE_OFFSET

@@ -10,6 +10,7 @@ use crate::light::{LightChoice, Shadows};
 use crate::math::Stream;
 use crate::medium::Extinction;
 use crate::reference::PathTracer;
+use crate::render::error_estimate::fewest_passes;
 use crate::render::film_pass::{FilmPass, PassFilm};
 use crate::render::light_groups::{LightGroups, empty_film};
 use crate::render::lit_lattice::ReadFrom;
@@ -47,12 +48,6 @@ const BIAS_NOISE: f64 = 0.1;
 
 /// The fewest photons of an estimate that k shrinks to: below, its noise is that of outliers.
 const FEWEST_OF_K: usize = 8;
-
-/// Passes from which the error is believed in: of small images, and of those with more than [`MANY_PIXELS`].
-const FEWEST_FOR_ERROR: [u32; 2] = [4, 2];
-
-/// Pixels whose mean square is as good as known from one pass in each half.
-const MANY_PIXELS: usize = 1 << 17;
 
 /// Passes that the photons which a lattice is expected to take are divided into at least: its noise does not depend on the number of pixels.
 const FEWEST_PASSES: u64 = 4;
@@ -376,18 +371,12 @@ impl<'a, E: Extinction> Passes<'a, E> {
         let done = self.state.report.passes_done;
         let within = |target: f64| {
             let error = self.state.report.error.map_or(f64::INFINITY, |error| error.total());
-            done >= self.fewest_for_error() && error <= target
+            done >= fewest_passes(self.state.film.pixels.len()) && error <= target
         };
         done > 0
             && (self.is_out_of_passes()
                 || self.options.target_error.is_some_and(within)
                 || self.observer.cancelled())
-    }
-
-    /// Passes from which the error is believed in.
-    fn fewest_for_error(&self) -> u32 {
-        let pixels = self.scene.camera.width * self.scene.camera.height;
-        FEWEST_FOR_ERROR[usize::from(pixels >= MANY_PIXELS)]
     }
 
     /// Whether there is no pass or no time left.
@@ -401,8 +390,8 @@ impl<'a, E: Extinction> Passes<'a, E> {
 
     /// Begins anew with a finer lattice, where the first passes show that bias alone would miss the target.
     fn refine(&mut self) {
-        let fewest = self.fewest_for_error();
         let state = &mut self.state;
+        let fewest = fewest_passes(state.film.pixels.len());
         // That of the lattice alone.
         let (Some(target), Some(error)) = (self.options.target_error, state.probes.error()) else {
             return;

@@ -2,11 +2,8 @@
 
 use crate::film::Film;
 use crate::render::RenderReport;
-use crate::render::error_estimate::ErrorProbes;
+use crate::render::error_estimate::{ErrorProbes, fewest_passes};
 use crate::render::regression::first_radius;
-
-/// Passes at which the error is measured first: each half has one.
-const FIRST_MEASURE: u32 = 2;
 
 /// A render between two passes. Read from a file it continues where it was written ([`RenderState::load`]).
 #[derive(Clone, Debug)]
@@ -33,7 +30,7 @@ impl RenderState {
         Self {
             begun: 0,
             resolution,
-            next_measure: FIRST_MEASURE,
+            next_measure: fewest_passes(film.pixels.len()),
             filter_radius: first_radius(film.width, film.height),
             seconds: 0.0,
             probes: ErrorProbes::new(film.width, film.height),
@@ -46,7 +43,7 @@ impl RenderState {
     pub(super) fn restart_film(&mut self) {
         self.film.clear();
         self.probes = ErrorProbes::new(self.film.width, self.film.height);
-        self.next_measure = FIRST_MEASURE;
+        self.next_measure = fewest_passes(self.film.pixels.len());
         self.report.passes_done = 0;
         self.report.error = None;
     }
