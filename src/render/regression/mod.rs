@@ -150,8 +150,9 @@ impl Halves<'_> {
             count += cost.pixel_count as f64;
         }
         let [a, b] = self.shares();
-        // Of so many blocks the sum has that standard error. Part of it counts: the radius of least error is chosen by this very sum.
-        let bias = (bias + 0.5 * spread.sqrt()).max(0.0);
+        // Of so many blocks the sum has that standard error. It counts: the radius of least error is chosen by this very sum, and a bias that noise hides is not known to be
+        // none.
+        let bias = (bias + spread.sqrt()).max(0.0);
         let count = count.max(1.0);
         let noise = (noise * a * b / count).sqrt() / mean;
         ErrorEstimate { noise, bias: (bias / count).sqrt() / mean }
