@@ -71,11 +71,19 @@ def test_a_world_of_one_colour(fog):
     agree(fog)
 
 
-def test_lights_of_a_size_are_hidden_before_a_world(fog):
-    fog.light("AREA", position=(0.6, 2.0, 0.5), size=1.0)
-    fog.sky(0.1, 0.2, 0.3)
-    ours, theirs = agree(fog)
-    np.testing.assert_allclose(ours.color[0, 0], [0.1, 0.2, 0.3], rtol=0.1)
+@pytest.mark.parametrize("kind", ["AREA", "POINT"])
+@pytest.mark.parametrize("is_seen", [None, True, False])
+def test_lights_of_a_size_are_seen_as_in_cycles(fog, kind, is_seen):
+    fog.scene.objects["Box"].scale = (0.5, 0.5, 0.5)
+    # Beside the fog, towards the camera.
+    lamp = fog.light(kind, position=(0.8, 0.5, 0.7), size=0.4, shadow_soft_size=0.2, use_soft_falloff=False)
+    lamp.rotation_euler = (-fog.camera.location + lamp.location).to_track_quat("Z", "Y").to_euler()
+    sky_image(fog)
+    if is_seen is not None:
+        lamp.visible_camera = is_seen
+    ours, theirs = agree(fog, 0.03)
+    brightest = 30.0 if is_seen else 5.0
+    assert (ours.color.max() > brightest) == (theirs.color.max() > brightest) == bool(is_seen), (ours.color.max(), theirs.color.max())
 
 
 def sky_image(stage):
