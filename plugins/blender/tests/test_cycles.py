@@ -7,6 +7,7 @@ import math
 
 import bpy
 import numpy as np
+import photonvdb
 import pytest
 
 LIGHTS = {
@@ -205,8 +206,22 @@ def test_a_flame_of_a_grid_glows_as_in_cycles(stage, fire):
 def test_a_blackbody_glows_as_in_cycles(stage, fire):
     far_fire(stage, fire, Blackbody_Intensity=1.0, Temperature=1.0)
     ours, theirs = stage.in_photonvdb(20_000, samples=16), stage.in_cycles(64)
-    # 3 % below Blender 4.5, 9 % below 5.0.
-    np.testing.assert_allclose(ours.mean[0], theirs.mean[0], rtol=0.12)
-    # Green is where gamut and interpolation tell most, blue is outside of the gamut.
-    np.testing.assert_allclose(ours.mean[1], theirs.mean[1], rtol=0.2)
+    # Cycles 5 renders this fire 7 % brighter than Cycles 4.
+    is_older = bpy.app.version < (5, 0)
+    np.testing.assert_allclose(ours.mean[0], theirs.mean[0], rtol=0.02 if is_older else 0.09)
+    # Where it is cold green and blue are outside of the gamut: below 0 in Cycles.
+    np.testing.assert_allclose(ours.mean[1], theirs.mean[1], rtol=0.06 if is_older else 0.12)
     assert 0.0 <= ours.mean[2] < 0.01 * ours.mean[0]
+
+
+@pytest.mark.parametrize("kelvin", [1200.0, 2000.0, 6000.0])
+def test_blackbodies_have_the_colours_of_cycles(stage, kelvin):
+    aim(stage, 20.0)
+    stage.camera.data.angle = math.radians(1.0)
+    file = stage.directory / "hot.vdb"
+    hot = np.full((16, 16, 16), kelvin, np.float32)
+    photonvdb.write_vdb(file, hot, np.diag([0.1, 0.1, 0.1, 1.0]), (-8, -8, -8), name="temperature")
+    glow = {"Blackbody_Intensity": 1.0, "Temperature": 1.0}
+    stage.volume(file, stage.material(Density=1e-6, Density_Attribute="temperature", Color=(0.0, 0.0, 0.0, 1.0), **glow))
+    ours, theirs = stage.in_photonvdb(1000), stage.in_cycles(64)
+    np.testing.assert_allclose(ours.mean, np.maximum(theirs.mean, 0.0), rtol=0.02, atol=0.005 * theirs.mean[0])
