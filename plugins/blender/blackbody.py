@@ -19,16 +19,7 @@ import photonvdb
 
 STEFAN_BOLTZMANN = 5.670374e-8
 
-#: h c / k_B [nm K].
-SECOND_RADIATION = 1.438776877e7
-
-#: Lobes (weight, middle [nm], 1 / width below it, above it) of the CIE 1931 functions x, y, z: Wyman, Sloan and Shirley,
-#: "Simple Analytic Approximations to the CIE XYZ Color Matching Functions" (2013).
-MATCHING = (
-    ((1.056, 599.8, 0.0264, 0.0323), (0.362, 442.0, 0.0624, 0.0374), (-0.065, 501.1, 0.0490, 0.0382)),
-    ((0.821, 568.8, 0.0213, 0.0247), (0.286, 530.9, 0.0613, 0.0322)),
-    ((1.217, 437.0, 0.0845, 0.0278), (0.681, 459.0, 0.0385, 0.0725)),
-)
+#: From CIE XYZ to Rec.709.
 XYZ_TO_RGB = np.array(
     ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))
 )
@@ -78,17 +69,6 @@ def emissivities(kelvin, intensity):
 def color_table():
     """Temperatures, and the colours of blackbodies of luminance 1."""
     kelvin = np.geomspace(COLDEST, HOTTEST, 256)
-    wavelength = np.arange(380.0, 781.0, 2.0)
-    planck = wavelength**-5 / np.expm1(SECOND_RADIATION / np.outer(kelvin, wavelength))
-    xyz = planck @ np.stack([matching(lobes, wavelength) for lobes in MATCHING], axis=1)
+    xyz = photonvdb.blackbody_xyz(kelvin)
     colors = (xyz / xyz[:, 1:2]) @ XYZ_TO_RGB.T
     return kelvin, np.maximum(colors, 0.0)
-
-
-def matching(lobes, wavelength):
-    """A sum of Gaussians, each with two widths."""
-    total = np.zeros_like(wavelength)
-    for weight, middle, below, above in lobes:
-        distance = (wavelength - middle) * np.where(wavelength < middle, below, above)
-        total += weight * np.exp(-0.5 * distance**2)
-    return total

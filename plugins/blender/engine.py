@@ -52,7 +52,7 @@ class PhotonvdbRenderEngine(bpy.types.RenderEngine):
             layers=film.costly_layers(view_layer),
             progress=Progress(self, scene.photonvdb),
         )
-        pixels = film.passes(rendering, found.direct, scene.render.film_transparent)
+        pixels = film.passes(rendering, scene.render.film_transparent)
         self.show(pixels, found.frame, view_layer.name)
 
     def show(self, pixels, frame, layer_name):

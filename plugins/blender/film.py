@@ -22,24 +22,16 @@ def costly_layers(view_layer):
     return ["depth"] if view_layer.use_pass_z else []
 
 
-def passes(rendering, direct, is_transparent):
-    """Pixels by the name of their pass, (height, width, channels), the topmost row first.
-
-    `direct` says what of the light that is seen directly belongs into the picture: all, the medium's own or none of it, and the
-    radiance of a background behind.
-    """
-    single, multiple = rendering["single_scatter"], rendering["multiple_scatter"]
-    transmittance = rendering["transmittance"]
-    seen = rendering["emission"] if direct.shows_emission else np.zeros_like(single)
-    seen = seen + transmittance * np.float32(direct.background)
-    coverage = rendering["rgba"][..., 3:]
+def passes(rendering, is_transparent):
+    """Pixels by the name of their pass, (height, width, channels), the topmost row first."""
+    color, coverage = np.split(rendering["rgba"], [3], axis=2)
     alpha = coverage if is_transparent else np.ones_like(coverage)
     found = {
-        "Combined": np.concatenate([single + multiple + seen, alpha], axis=2),
-        "Single Scatter": single,
-        "Multiple Scatter": multiple,
-        "Emission": seen,
-        "Transmittance": transmittance,
+        "Combined": np.concatenate([color, alpha], axis=2),
+        "Single Scatter": rendering["single_scatter"],
+        "Multiple Scatter": rendering["multiple_scatter"],
+        "Emission": rendering["emission"],
+        "Transmittance": rendering["transmittance"],
         "Coverage": coverage,
     }
     if "Z" in rendering:

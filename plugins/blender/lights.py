@@ -12,6 +12,9 @@ from .refusal import Refused
 EDGE_STEPS = 8
 DISK_STRIPS = 8
 
+#: Lights of a size: Blender's are hidden from the camera, unless Ray Visibility shows them.
+EXTENDED = ("quad", "sphere")
+
 #: Widest sun that is taken for parallel light [rad].
 WIDEST_SUN = radians(3.0)
 
@@ -28,7 +31,8 @@ def lights(instance, notes):
         raise Refused(name, "power by area: switch Normalize on")
     color = color_of(light, name)
     makers = {"POINT": point, "SPOT": spot, "SUN": sun, "AREA": area}
-    return makers[light.type](light, instance.matrix_world.copy(), color, name, notes)
+    made = makers[light.type](light, instance.matrix_world.copy(), color, name, notes)
+    return [lamp | {"visible": light_object.visible_camera} if lamp["kind"] in EXTENDED else lamp for lamp in made]
 
 
 def color_of(light, name):

@@ -11,23 +11,12 @@ from .refusal import Refused
 #: What can be seen, and would be missing from the picture.
 SURFACES = (bpy.types.Mesh, bpy.types.Curve, bpy.types.MetaBall, bpy.types.PointCloud, bpy.types.Curves)
 
-#: Lights that the library shows to the camera, and Blender does not.
-EXTENDED = ("quad", "sphere")
-
-
-class Direct(NamedTuple):
-    """What is seen directly, through the medium."""
-
-    shows_emission: bool
-    background: tuple
-
 
 class Translated(NamedTuple):
     """A scene for the library, which of its image is the picture, and what is to be said of both."""
 
     scene: dict
     frame: Frame
-    direct: Direct
     notes: list
 
 
@@ -40,17 +29,15 @@ def translated(depsgraph, directory):
     if not media:
         raise Refused(depsgraph.scene.name, "there is no volume to render")
     sky = world.environment(depsgraph.scene.world, directory)
-    is_transparent = depsgraph.scene.render.film_transparent
-    background, direct = seen_directly(media, lamps, sky, is_transparent, notes)
     # Without light the picture is black, but has an alpha.
     lit = lamps + ([sky] if sky else []) or [{"kind": "environment", "radiance": 0.0}]
     scene = {
         "camera": framed.camera,
         "medium": media if len(media) > 1 else media[0],
         "light": lit,
-        "render": {"background": background},
+        "render": {"background": "holdout" if depsgraph.scene.render.film_transparent else "visible"},
     }
-    return Translated(scene, framed, direct, notes)
+    return Translated(scene, framed, notes)
 
 
 def things(depsgraph, directory, notes, leaves_out):
@@ -86,17 +73,3 @@ def check_visible(thing):
         raise Refused(thing.name, "holdouts")
     if not all((thing.visible_camera, thing.visible_volume_scatter, thing.visible_shadow)):
         raise Refused(thing.name, "it is invisible to some kinds of rays, under Visibility, and not to others")
-
-
-def seen_directly(media, lamps, sky, is_transparent, notes):
-    """The `background` of [render], and what of the emission is in the picture: lamps of some size are not seen in Blender."""
-    has_extended = any(lamp["kind"] in EXTENDED for lamp in lamps)
-    glows = any("flame" in medium for medium in media)
-    constant = sky is None or "radiance" in sky
-    black = (0.0,) * 3
-    if not has_extended:
-        return "holdout" if is_transparent else "visible", Direct(True, black)
-    if not glows and (is_transparent or constant):
-        return "holdout", Direct(False, black if is_transparent or sky is None else tuple(sky["radiance"]))
-    notes.append("lights that have a size are seen where they are in view: beside flames and images of a world they cannot be hidden")
-    return "holdout" if is_transparent else "visible", Direct(True, black)

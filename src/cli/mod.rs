@@ -28,7 +28,6 @@ mod render;
 mod report;
 mod resources;
 mod schema;
-mod settings;
 mod summary;
 mod sweep;
 mod table_outputs;

@@ -1,13 +1,12 @@
 //! What a render says to people, on stderr.
 
-use photonvdb::render::RenderReport;
+use photonvdb::render::{CalibrationFigures, PhotonCounts, RenderReport, StageSeconds};
 use photonvdb::scene::{Plan, Scene};
+use photonvdb::trace::PowerBalance;
 
 use super::console::say;
 use super::render::args::RenderArguments;
-use super::report::{
-    CalibrationFigures, Comparison, PhotonCounts, Power, Report, Seconds, is_stdout,
-};
+use super::report::{Comparison, Report, Seconds, is_stdout};
 
 /// Speaks unless told to be quiet.
 #[derive(Clone, Copy)]
@@ -43,9 +42,10 @@ impl Summary {
 
     /// What it took, and what came of it.
     pub fn report(self, made: &RenderReport, report: &Report, max_order: u32) {
-        self.times(&report.seconds, &report.photons);
-        report.calibration.iter().for_each(|calibration| self.calibration(calibration));
-        self.power(&report.power, max_order);
+        let figures = &report.figures;
+        self.times(&report.seconds, &figures.photons);
+        figures.calibration.iter().for_each(|calibration| self.calibration(calibration));
+        self.power(&figures.power, max_order);
         self.error(made);
         report.comparison.iter().for_each(|comparison| self.comparison(comparison));
     }
@@ -69,7 +69,8 @@ impl Summary {
 
     /// Where the time went.
     fn times(self, seconds: &Seconds, photons: &PhotonCounts) {
-        let Seconds { load, trace, build, calibrate, gather, write, total } = seconds;
+        let Seconds { load, stages, write, total } = seconds;
+        let StageSeconds { trace, build, calibrate, gather } = stages;
         let calibrate = match *calibrate {
             0.0 => String::new(),
             seconds => format!("calibrate {seconds:.2}, "),
@@ -96,14 +97,14 @@ impl Summary {
     }
 
     /// That no light was sent, or that photons were cut off at the last order followed, if it shows.
-    fn power(self, power: &Power, max_order: u32) {
-        let sum = |rgb: [f64; 3]| rgb.iter().sum::<f64>();
-        if sum(power.emitted) == 0.0 {
+    fn power(self, power: &PowerBalance, max_order: u32) {
+        let [emitted, truncated] = [power.emitted, power.truncated].map(|rgb| rgb.element_sum());
+        if emitted == 0.0 {
             self.line(
                 "warning: no light falls on the medium: every light is dark or shines past it",
             );
         }
-        let share = sum(power.truncated) / sum(power.emitted);
+        let share = truncated / emitted;
         if share > 1e-3 {
             let percent = 100.0 * share;
             self.line(&format!(

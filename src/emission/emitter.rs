@@ -384,17 +384,20 @@ mod tests {
                 edge_u: DVec3::new(2.0, 0.3, 0.0),
                 edge_v: DVec3::new(0.0, 0.0, 1.5),
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
             Light::Sphere(SphereLight {
                 center: DVec3::new(2.5, 0.0, 1.0),
                 radius: 0.8,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
             // One light within the medium of either kind.
             Light::Sphere(SphereLight {
                 center: DVec3::new(-0.3, 0.2, -0.1),
                 radius: 0.2,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
         ]
     }

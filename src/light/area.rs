@@ -16,6 +16,8 @@ pub struct QuadLight {
     pub edge_v: DVec3,
     /// \[W/(m^2 sr)\]
     pub radiance: Rgb,
+    /// Whether the camera sees it.
+    pub is_visible: bool,
 }
 
 /// A sphere that radiates from its whole surface.
@@ -27,6 +29,8 @@ pub struct SphereLight {
     pub radius: f64,
     /// \[W/(m^2 sr)\]
     pub radiance: Rgb,
+    /// Whether the camera sees it.
+    pub is_visible: bool,
 }
 
 impl QuadLight {
@@ -127,8 +131,12 @@ mod tests {
     /// A small plane facing a sphere of radius R at distance d receives pi L (R/d)^2.
     #[test]
     fn sphere_irradiance_is_exact() {
-        let light =
-            SphereLight { center: DVec3::new(0.0, 0.0, 3.0), radius: 1.0, radiance: Rgb::ONE };
+        let light = SphereLight {
+            center: DVec3::new(0.0, 0.0, 3.0),
+            radius: 1.0,
+            radiance: Rgb::ONE,
+            is_visible: true,
+        };
         let measured = mean_irradiance(|u| light.sample_illumination(DVec3::ZERO, u), DVec3::Z);
         let exact = std::f64::consts::PI / 9.0;
         assert!((measured / exact - 1.0).abs() < 1e-4, "{measured} {exact}");
@@ -146,6 +154,7 @@ mod tests {
             edge_u: DVec3::new(0.0, 2.0, 0.0),
             edge_v: DVec3::new(2.0, 0.0, 0.0),
             radiance: Rgb::ONE,
+            is_visible: true,
         };
         let measured = mean_irradiance(|u| light.sample_illumination(DVec3::ZERO, u), DVec3::Z);
         let (a, b) = (0.5_f64, 0.5_f64);

@@ -1,6 +1,6 @@
 //! Lights: what sends light into the medium, and how strongly each place is lit.
 //!
-//! Area lights and environments are seen by the camera too. No light casts a shadow: the medium is all
+//! Area lights and environments are seen by the camera too, unless the scene hides them. No light casts a shadow: the medium is all
 //! that attenuates.
 
 mod area;
@@ -97,6 +97,16 @@ impl Light {
             Self::Environment(_) => None,
             Self::Quad(light) => light.sample_illumination(place, u),
             Self::Sphere(light) => light.sample_illumination(place, u),
+        }
+    }
+
+    /// Whether the camera sees the light where it looks at it.
+    pub fn is_visible(&self) -> bool {
+        match self {
+            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => false,
+            Self::Environment(_) => true,
+            Self::Quad(light) => light.is_visible,
+            Self::Sphere(light) => light.is_visible,
         }
     }
 

@@ -5,6 +5,8 @@
 //! cells, so that light read from cells twice as long differs by three times the bias. The difference is taken, pass by pass, in
 //! one pixel of sixteen; its mean square over pixels, less what its own noise adds, gives the bias.
 
+use serde::Serialize;
+
 use crate::film::Film;
 use crate::math::{Rgb, mean_channel};
 use crate::render::regression::Halves;
@@ -38,7 +40,7 @@ pub fn probed_count(width: usize, height: usize) -> usize {
 }
 
 /// The error of an image, as shares of its mean.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ErrorEstimate {
     /// Root mean square of the noise: of all channels of all pixels.
     pub noise: f64,

@@ -116,18 +116,6 @@ impl<'a, E: Extinction> LitMedium<'a, E> {
         map_reader(self.scene, self.extinction, &self.map, self.k, self.constant)
     }
 
-    /// A reader of `k` photons that count as the divisor says; `None` where that would have to be measured: it is for the k of the
-    /// scene, if the scene asks for it.
-    pub fn reader_of(
-        &self,
-        k: NonZeroUsize,
-        divisor: Divisor,
-    ) -> Option<Reader<'_, E, Estimator<'_, E>>> {
-        let is_measured = self.scene.estimate.divisor == divisor && self.k == k;
-        let constant = divisor.constant(k).or(is_measured.then_some(self.constant))?;
-        Some(map_reader(self.scene, self.extinction, &self.map, k, constant))
-    }
-
     /// The photon map, and what k photons of it count as.
     pub(super) fn into_map(self) -> (PhotonMap, f64) {
         (self.map, self.constant)

@@ -1,8 +1,5 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
-
-use std::num::NonZeroUsize;
-
-use crate::estimate::{Divisor, Estimate, Estimator};
+use crate::estimate::{Estimate, Estimator};
 use crate::map::PhotonMap;
 use crate::math::{DVec3, Random, Ray, Rgb};
 use crate::medium::{
@@ -87,21 +84,6 @@ impl<'a> LitScene<'a> {
             Lit::Several(lit) => lit.into_map(),
         };
         (map, constant, self.report)
-    }
-
-    /// A reader for one thread that takes `k` photons, which count as the divisor says; `None` where that would have to be measured:
-    /// [`Divisor::Calibrated`], unless the scene asks for it with that k.
-    pub fn reader_of(
-        &self,
-        k: NonZeroUsize,
-        divisor: Divisor,
-    ) -> Option<Box<dyn LightReader + '_>> {
-        Some(match &self.lit {
-            Lit::Uniform(lit) => Box::new(lit.reader_of(k, divisor)?),
-            Lit::Chromatic(lit) => Box::new(lit.reader_of(k, divisor)?),
-            Lit::Grid(lit) => Box::new(lit.reader_of(k, divisor)?),
-            Lit::Several(lit) => Box::new(lit.reader_of(k, divisor)?),
-        })
     }
 
     /// The photon map.

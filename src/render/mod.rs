@@ -28,6 +28,7 @@ mod render_state;
 mod report;
 mod scattered_light;
 mod single_scatter;
+mod used_settings;
 
 pub use bake::{BakeOptions, BakeReport, Baked, bake, even_densities};
 pub use calibration::Calibration;
@@ -40,8 +41,9 @@ pub use owned_lit_scene::{NotCalibrated, OwnedLitScene};
 pub use passes::photons_per_pass;
 pub use reader::{RayRadiance, Reader};
 pub use render_state::RenderState;
-pub use report::{RenderReport, StageSeconds};
+pub use report::{CalibrationFigures, PhotonCounts, RenderFigures, RenderReport, StageSeconds};
 pub use scattered_light::Gather;
+pub use used_settings::UsedSettings;
 
 use std::path::Path;
 

@@ -1,6 +1,7 @@
 //! A scene and its photon map in one value, for hosts that cannot keep a borrow: foreign languages, long-lived objects.
 
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use crate::estimate::{Divisor, Kernel};
 use crate::map::PhotonMap;
@@ -9,10 +10,10 @@ use crate::render::lit_medium::{map_reader, photons_of_estimate};
 use crate::render::{LightReader, LitScene, Observer, RenderError, RenderReport};
 use crate::scene::Scene;
 
-/// A [`LitScene`] that owns its scene. Shared by all threads; each takes a reader of its own.
+/// A [`LitScene`] that owns its scene, or shares it. Shared by all threads; each takes a reader of its own.
 #[derive(Debug)]
 pub struct OwnedLitScene {
-    scene: Scene,
+    scene: Arc<Scene>,
     map: PhotonMap,
     /// What the scene's k photons count as.
     constant: f64,
@@ -29,7 +30,11 @@ impl OwnedLitScene {
     ///
     /// # Errors
     /// More photons than memory allows.
-    pub fn prepare(scene: Scene, observer: &dyn Observer) -> Result<Self, RenderError> {
+    pub fn prepare(
+        scene: impl Into<Arc<Scene>>,
+        observer: &dyn Observer,
+    ) -> Result<Self, RenderError> {
+        let scene = scene.into();
         let (map, constant, report) = LitScene::prepare(&scene, observer)?.into_map();
         Ok(Self { scene, map, constant, report })
     }

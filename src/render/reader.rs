@@ -226,7 +226,8 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
     /// Lights seen along the ray; a background that is held out is none of them.
     fn unscattered(&self, ray: &Ray, max_distance: f64, transmittance: impl Fn(f64) -> Rgb) -> Rgb {
         let is_background_seen = self.scene.render.background == Background::Visible;
-        let seen = self.lights().filter_map(|(_, light)| light.seen_along(ray));
+        let visible = self.lights().filter(|(_, light)| light.is_visible());
+        let seen = visible.filter_map(|(_, light)| light.seen_along(ray));
         let near = seen.filter(|(distance, _)| {
             *distance <= max_distance && (is_background_seen || distance.is_finite())
         });

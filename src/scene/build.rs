@@ -36,11 +36,11 @@ pub(super) fn light(section: &LightSection, key: &str, directory: &Path) -> Resu
             let image = image.map_err(|text| Problem::new(format!("{key}.file"), text))?;
             Light::Environment(Environment::Image(Box::new(image)))
         }
-        LightSection::Quad { corner, edge_u, edge_v, radiance } => {
-            Light::Quad(QuadLight { corner, edge_u, edge_v, radiance })
+        LightSection::Quad { corner, edge_u, edge_v, radiance, visible: is_visible } => {
+            Light::Quad(QuadLight { corner, edge_u, edge_v, radiance, is_visible })
         }
-        LightSection::Sphere { center, radius, radiance } => {
-            Light::Sphere(SphereLight { center, radius, radiance })
+        LightSection::Sphere { center, radius, radiance, visible: is_visible } => {
+            Light::Sphere(SphereLight { center, radius, radiance, is_visible })
         }
     })
 }

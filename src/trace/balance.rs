@@ -1,11 +1,13 @@
 //! Where the photons' power went.
 
+use serde::Serialize;
+
 use crate::math::Rgb;
 
 /// The energy balance of a pass, in `f64`.
 ///
 /// emitted = absorbed + escaped + truncated + resampled holds up to rounding, photon by photon.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PowerBalance {
     /// Power of all photons sent into the bounds \[W\].
     pub emitted: Rgb,

@@ -51,7 +51,13 @@ impl Incidence {
                 let edge = 1e-3;
                 let (edge_u, edge_v) = (DVec3::X * edge, DVec3::Y * edge);
                 let radiance = Rgb::splat(1.0 / (PI * edge * edge));
-                Light::Quad(QuadLight { corner: DVec3::ZERO, edge_u, edge_v, radiance })
+                Light::Quad(QuadLight {
+                    corner: DVec3::ZERO,
+                    edge_u,
+                    edge_v,
+                    radiance,
+                    is_visible: true,
+                })
             }
         }
     }

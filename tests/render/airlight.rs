@@ -157,10 +157,16 @@ fn every_light_by_the_ruler() {
         edge_u: DVec3::new(0.9, 0.1, 0.0),
         edge_v: DVec3::new(0.0, 0.2, -0.8),
         radiance: Rgb::splat(2.0),
+        is_visible: true,
     };
     // edge_u x edge_v points to +y: turned over, it shines down.
     let down = |q: QuadLight| QuadLight { edge_u: q.edge_v, edge_v: q.edge_u, ..q };
-    let sphere = |center: DVec3, radius| SphereLight { center, radius, radiance: Rgb::splat(2.0) };
+    let sphere = |center: DVec3, radius| SphereLight {
+        center,
+        radius,
+        radiance: Rgb::splat(2.0),
+        is_visible: true,
+    };
     let point = |intensity: f64| {
         move |place: DVec3| {
             let offset = position - place;
@@ -231,6 +237,7 @@ fn the_back_of_a_quad_and_the_outside_of_a_cone_are_dark() {
         edge_u: DVec3::Z,
         edge_v: DVec3::X,
         radiance: Rgb::ONE,
+        is_visible: true,
     };
     let away = QuadLight { edge_u: back.edge_v, edge_v: back.edge_u, ..back };
     assert!(away.area_normal().y < 0.0);

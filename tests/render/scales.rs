@@ -45,11 +45,13 @@ impl Place {
                 edge_u: DVec3::X * self.scale,
                 edge_v: DVec3::Z * self.scale,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
             Light::Sphere(SphereLight {
                 center: self.point(1.5, 0.5, 1.2),
                 radius: 0.3 * self.scale,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
             white_sky(),
         ]

@@ -104,6 +104,7 @@ fn every_light() -> Vec<(&'static str, Light)> {
                 edge_u: DVec3::new(0.8, 0.1, 0.0),
                 edge_v: DVec3::new(0.0, 0.1, 0.7),
                 radiance: Rgb::splat(2.0),
+                is_visible: true,
             }),
         ),
         (
@@ -112,6 +113,7 @@ fn every_light() -> Vec<(&'static str, Light)> {
                 center: position,
                 radius: 0.15,
                 radiance: Rgb::splat(3.0),
+                is_visible: true,
             }),
         ),
     ]

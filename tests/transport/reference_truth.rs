@@ -191,10 +191,16 @@ fn all_lights() -> Scene {
         edge_u: DVec3::X,
         edge_v: DVec3::NEG_Y,
         radiance: Rgb::splat(2.0),
+        is_visible: true,
     }));
     let radius = 0.1;
     let center = center - 0.3 * DVec3::Z;
-    scene.lights.push(Light::Sphere(SphereLight { center, radius, radiance: Rgb::splat(4.0) }));
+    scene.lights.push(Light::Sphere(SphereLight {
+        center,
+        radius,
+        radiance: Rgb::splat(4.0),
+        is_visible: true,
+    }));
     let size = [24, 24];
     let from = DVec3::new(0.8, -4.2, 0.6);
     let camera =

@@ -92,6 +92,7 @@ fn lights() -> Vec<(&'static str, Light)> {
                 edge_u: DVec3::X * 1.5,
                 edge_v: DVec3::Z,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
         ),
         (
@@ -100,6 +101,7 @@ fn lights() -> Vec<(&'static str, Light)> {
                 center: DVec3::new(1.5, 0.5, 1.2),
                 radius: 0.4,
                 radiance: Rgb::ONE,
+                is_visible: true,
             }),
         ),
     ]

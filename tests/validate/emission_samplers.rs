@@ -160,6 +160,7 @@ fn emission_of_quads_is_even_over_their_area() {
         edge_u: DVec3::Z,
         edge_v: DVec3::X,
         radiance: Rgb::ONE,
+        is_visible: true,
     };
     let light = Light::Quad(quad);
     let bounds = ball(2.0);

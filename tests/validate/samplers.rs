@@ -220,6 +220,7 @@ fn illumination_by_area_lights() {
         edge_u: DVec3::new(0.0, 0.2, -0.8),
         edge_v: DVec3::new(0.9, 0.1, 0.0),
         radiance: Rgb::ONE,
+        is_visible: true,
     };
     let place = DVec3::new(0.1, -0.3, 0.1);
     let side = 6;
@@ -244,7 +245,12 @@ fn illumination_by_area_lights() {
     let probabilities: Vec<f64> = cells.iter().map(|cell| cell / whole).collect();
     assert_counts(&counts, &probabilities, "quad");
 
-    let sphere = SphereLight { center: DVec3::new(1.0, 2.0, 0.5), radius: 0.8, radiance: Rgb::ONE };
+    let sphere = SphereLight {
+        center: DVec3::new(1.0, 2.0, 0.5),
+        radius: 0.8,
+        radiance: Rgb::ONE,
+        is_visible: true,
+    };
     let axis = (sphere.center - place).normalize();
     let sine = sphere.radius / (sphere.center - place).length();
     let largest = versine(sine.asin());

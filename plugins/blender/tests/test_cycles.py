@@ -7,6 +7,7 @@ import math
 
 import bpy
 import numpy as np
+import photonvdb
 import pytest
 
 LIGHTS = {
@@ -71,11 +72,20 @@ def test_a_world_of_one_colour(fog):
     agree(fog)
 
 
-def test_lights_of_a_size_are_hidden_before_a_world(fog):
-    fog.light("AREA", position=(0.6, 2.0, 0.5), size=1.0)
-    fog.sky(0.1, 0.2, 0.3)
-    ours, theirs = agree(fog)
-    np.testing.assert_allclose(ours.color[0, 0], [0.1, 0.2, 0.3], rtol=0.1)
+@pytest.mark.parametrize("kind", ["AREA", "POINT"])
+@pytest.mark.parametrize("is_seen", [None, True, False])
+def test_lights_of_a_size_are_seen_as_in_cycles(fog, kind, is_seen):
+    fog.scene.objects["Box"].scale = (0.5, 0.5, 0.5)
+    # Beside the fog, towards the camera.
+    lamp = fog.light(kind, position=(0.8, 0.5, 0.7), size=0.4, shadow_soft_size=0.2, use_soft_falloff=False)
+    lamp.rotation_euler = (-fog.camera.location + lamp.location).to_track_quat("Z", "Y").to_euler()
+    sky_image(fog)
+    if is_seen is not None:
+        lamp.visible_camera = is_seen
+    # Many rays, for the silhouette.
+    ours, theirs = agree(fog, 0.03, samples=64)
+    brightest = 30.0 if is_seen else 5.0
+    assert (ours.color.max() > brightest) == (theirs.color.max() > brightest) == bool(is_seen), (ours.color.max(), theirs.color.max())
 
 
 def sky_image(stage):
@@ -196,8 +206,22 @@ def test_a_flame_of_a_grid_glows_as_in_cycles(stage, fire):
 def test_a_blackbody_glows_as_in_cycles(stage, fire):
     far_fire(stage, fire, Blackbody_Intensity=1.0, Temperature=1.0)
     ours, theirs = stage.in_photonvdb(20_000, samples=16), stage.in_cycles(64)
-    # 3 % below Blender 4.5, 9 % below 5.0.
-    np.testing.assert_allclose(ours.mean[0], theirs.mean[0], rtol=0.12)
-    # Green is where gamut and interpolation tell most, blue is outside of the gamut.
-    np.testing.assert_allclose(ours.mean[1], theirs.mean[1], rtol=0.2)
+    # Cycles 5 renders this fire 7 % brighter than Cycles 4.
+    is_older = bpy.app.version < (5, 0)
+    np.testing.assert_allclose(ours.mean[0], theirs.mean[0], rtol=0.02 if is_older else 0.09)
+    # Where it is cold green and blue are outside of the gamut: below 0 in Cycles.
+    np.testing.assert_allclose(ours.mean[1], theirs.mean[1], rtol=0.06 if is_older else 0.12)
     assert 0.0 <= ours.mean[2] < 0.01 * ours.mean[0]
+
+
+@pytest.mark.parametrize("kelvin", [1200.0, 2000.0, 6000.0])
+def test_blackbodies_have_the_colours_of_cycles(stage, kelvin):
+    aim(stage, 20.0)
+    stage.camera.data.angle = math.radians(1.0)
+    file = stage.directory / "hot.vdb"
+    hot = np.full((16, 16, 16), kelvin, np.float32)
+    photonvdb.write_vdb(file, hot, np.diag([0.1, 0.1, 0.1, 1.0]), (-8, -8, -8), name="temperature")
+    glow = {"Blackbody_Intensity": 1.0, "Temperature": 1.0}
+    stage.volume(file, stage.material(Density=1e-6, Density_Attribute="temperature", Color=(0.0, 0.0, 0.0, 1.0), **glow))
+    ours, theirs = stage.in_photonvdb(1000), stage.in_cycles(64)
+    np.testing.assert_allclose(ours.mean, np.maximum(theirs.mean, 0.0), rtol=0.02, atol=0.005 * theirs.mean[0])

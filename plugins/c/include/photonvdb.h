@@ -28,7 +28,7 @@ typedef enum {
   PVDB_DIVISOR_K_MINUS_ONE = 1,
   // k - 1/2.
   PVDB_DIVISOR_K_MINUS_HALF = 2,
-  // What was measured when the map was built: only if the scene says `divisor = "calibrated"`, and for its k.
+  // What was measured when the map was built: only if the scene says `divisor = "calibrated"`.
   PVDB_DIVISOR_CALIBRATED = 3,
 } pvdb_divisor;
 

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use photonvdb::estimate::Divisor;
 use photonvdb::math::{DVec3, Ray, Stream};
 use photonvdb::medium::Bounds;
-use photonvdb::render::{LightReader, LitScene, Unobserved};
-use photonvdb::scene::Scene;
+use photonvdb::render::{LightReader, NotCalibrated, OwnedLitScene, RenderError, Unobserved};
 use rayon::prelude::*;
 
 use crate::borrow::{borrow, items, room};
@@ -21,9 +20,7 @@ const SHARE: usize = 256;
 #[allow(non_camel_case_types)]
 #[derive(Debug)]
 pub struct pvdb_map {
-    /// Borrows from `scene`, and is dropped before it.
-    lit: LitScene<'static>,
-    scene: Arc<Scene>,
+    lit: OwnedLitScene,
 }
 
 /// What the k nearest photons count as.
@@ -37,7 +34,7 @@ pub enum pvdb_divisor {
     KMinusOne = 1,
     /// k - 1/2.
     KMinusHalf = 2,
-    /// What was measured when the map was built: only if the scene says `divisor = "calibrated"`, and for its k.
+    /// What was measured when the map was built: only if the scene says `divisor = "calibrated"`.
     Calibrated = 3,
 }
 
@@ -60,14 +57,11 @@ pub unsafe extern "C" fn pvdb_map_build(
         // SAFETY: the caller's.
         let scene = Arc::clone(&unsafe { borrow(scene, "scene") }?.scene);
         if matches!(scene.medium.bounds, Bounds::Infinite) {
-            return Err(Failure::render(photonvdb::render::RenderError::InfiniteMedium));
+            return Err(Failure::render(RenderError::InfiniteMedium));
         }
-        // SAFETY: the scene does not move within its `Arc`, of which the map keeps one for longer than `lit` lives: fields are
-        // dropped in their order. `lit` is never given out but by a reference that ends with the map's.
-        let lasting: &'static Scene = unsafe { &*Arc::as_ptr(&scene) };
-        let lit = LitScene::prepare(lasting, &Unobserved).map_err(Failure::render)?;
+        let lit = OwnedLitScene::prepare(scene, &Unobserved).map_err(Failure::render)?;
         // SAFETY: as above.
-        unsafe { map.write(Box::into_raw(Box::new(pvdb_map { lit, scene }))) };
+        unsafe { map.write(Box::into_raw(Box::new(pvdb_map { lit }))) };
         Ok(())
     })
 }
@@ -79,8 +73,11 @@ pub unsafe extern "C" fn pvdb_map_build(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pvdb_map_free(map: *mut pvdb_map) {
     if !map.is_null() {
-        // SAFETY: `Box::into_raw` made it; the rest is the caller's.
-        guarded(|| Ok(drop(unsafe { Box::from_raw(map) })));
+        guarded(|| {
+            // SAFETY: `Box::into_raw` made it; the rest is the caller's.
+            drop(unsafe { Box::from_raw(map) });
+            Ok(())
+        });
     }
 }
 
@@ -145,15 +142,10 @@ pub unsafe extern "C" fn pvdb_map_power_density(
         let (map, points, rgb) = unsafe { asked(map, points, count, rgb) }?;
         let k = NonZeroUsize::new(k).ok_or_else(|| Failure::argument("k must be at least 1"))?;
         let divisor = divisor_of(divisor)?;
-        if map.lit.reader_of(k, divisor).is_none() {
-            let own = map.scene.estimate.k;
-            let text = format!(
-                "a calibrated divisor is measured for the scene's own k, {own}, if it asks for one"
-            );
-            return Err(Failure::argument(text));
-        }
-        // Known to be there.
-        let reader = || map.lit.reader_of(k, divisor).unwrap_or_else(|| map.lit.reader());
+        // What is refused is refused before the work.
+        let refused = |error: NotCalibrated| Failure::argument(error.to_string());
+        map.lit.reader_with(k, divisor).map_err(refused)?;
+        let reader = || map.lit.reader_with(k, divisor).unwrap_or_else(|_| map.lit.reader());
         read(points, rgb, reader, |reader, place| {
             reader.power_density(place).value.as_vec3().to_array()
         });

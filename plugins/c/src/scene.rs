@@ -66,8 +66,11 @@ pub unsafe extern "C" fn pvdb_scene_from_text(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pvdb_scene_free(scene: *mut pvdb_scene) {
     if !scene.is_null() {
-        // SAFETY: `Box::into_raw` made it; the rest is the caller's.
-        guarded(|| Ok(drop(unsafe { Box::from_raw(scene) })));
+        guarded(|| {
+            // SAFETY: `Box::into_raw` made it; the rest is the caller's.
+            drop(unsafe { Box::from_raw(scene) });
+            Ok(())
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::error::refused;
 
@@ -31,6 +31,7 @@ pub fn to_text(object: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// JSON as dicts, lists and numbers.
-pub fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
-    py.import("json")?.call_method1("loads", (value.to_string(),))
+pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(refused)?;
+    py.import("json")?.call_method1("loads", (text,))
 }

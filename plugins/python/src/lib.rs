@@ -7,6 +7,7 @@
 //! library works the interpreter is free, and [`run`] listens to Ctrl-C and calls back.
 
 mod array;
+mod blackbody;
 mod error;
 mod input;
 mod json;
@@ -22,6 +23,8 @@ mod volume;
 /// The compiled half of the package.
 #[pyo3::pymodule]
 mod _photonvdb {
+    #[pymodule_export]
+    use crate::blackbody::blackbody_xyz;
     #[pymodule_export]
     use crate::error::Error;
     #[pymodule_export]

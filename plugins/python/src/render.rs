@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use photonvdb::film::ExrOptions;
-use photonvdb::render::{CostlyLayers, RenderOptions, photons_per_pass, render as render_scene};
+use photonvdb::render::{
+    CostlyLayers, RenderOptions, UsedSettings, photons_per_pass, render as render_scene,
+};
 use photonvdb::scene::{Overrides, Plan};
 use pyo3::prelude::*;
 
@@ -12,7 +14,7 @@ use crate::error::{IntoPyErr, refused};
 use crate::input::{Count, SceneSource, Words, warn};
 use crate::json::to_python;
 use crate::rendering::Rendering;
-use crate::report::Made;
+use crate::report::{Report, Seconds};
 use crate::run::{run, thread_pool};
 
 /// Renders a scene: a dict with the keys of a scene file, or the path of one.
@@ -74,17 +76,17 @@ pub fn render(
     let load = started.elapsed().as_secs_f64();
     let rendered = run(py, &pool, progress, |watch| render_scene(&scene, &options, watch))?;
     let rendering = rendered.map_err(IntoPyErr::into_py_err)?;
-    let made = Made {
-        name: &source.name(),
-        scene: &scene,
-        plan: &plan,
-        options: &options,
-        threads: pool.current_num_threads(),
-        report: &rendering.report,
-        seconds: [load, started.elapsed().as_secs_f64()],
+    let made = &rendering.report;
+    let settings = UsedSettings::of(source.name(), &scene, &options, pool.current_num_threads());
+    let metadata = settings.metadata(&scene, made);
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        plan,
+        settings,
+        figures: made.figures(scene.estimate.k),
+        seconds: Seconds { load, stages: made.seconds, total: started.elapsed().as_secs_f64() },
     };
-    let report = to_python(py, &made.to_json())?.unbind();
-    let metadata = made.metadata();
+    let report = to_python(py, &report)?.unbind();
     Rendering::new(py, rendering.film, wanted.exr, metadata, report)
 }
 

@@ -103,3 +103,12 @@ def test_what_cannot_be_read_is_refused(tmp_path, root):
     photonvdb.write_vdb(tmp_path / "wide.vdb", wide)
     with pytest.raises(photonvdb.Error, match="200000 x 1 x 1 voxels needs"):
         photonvdb.read_vdb(tmp_path / "wide.vdb", max_memory=1e5)
+
+
+def test_blackbodies_have_the_colours_of_the_planckian_locus():
+    xyz = photonvdb.blackbody_xyz([[1000.0, 3000.0], [6500.0, 300.0]])
+    assert xyz.shape == (2, 2, 3) and not xyz[1, 1].any()
+    chromaticity = xyz[..., :2] / np.maximum(xyz.sum(axis=-1, keepdims=True), 1e-30)
+    # Wyszecki and Stiles, Color Science, table 1(3.3.4).
+    np.testing.assert_allclose(chromaticity, [[[0.6528, 0.3445], [0.4369, 0.4041]], [[0.3135, 0.3236], [0.0, 0.0]]], atol=1e-4)
+    assert photonvdb.blackbody_xyz(1900).shape == (3,)

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use photonvdb::film::{FilmError, RgbImage, compare, read_rgb};
 use photonvdb::render::{
-    Checkpoints, Observer, RenderOptions, RenderState, photons_per_pass, render_from,
+    Checkpoints, Observer, RenderOptions, RenderState, UsedSettings, photons_per_pass, render_from,
 };
 use photonvdb::scene::{Plan, Scene};
 
@@ -17,7 +17,6 @@ use super::interrupt;
 use super::outputs;
 use super::progress::Progress;
 use super::report::{Comparison, Report};
-use super::settings::Settings;
 use super::summary::Summary;
 use super::text_file::write_json;
 use super::thread_pool;
@@ -40,7 +39,9 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let load = started.elapsed().as_secs_f64();
 
     let pool = thread_pool(arguments.threads)?;
-    let settings = Settings::of(&arguments.scene, &scene, &options, pool.current_num_threads());
+    let name = arguments.scene.file_name().unwrap_or(arguments.scene.as_os_str());
+    let name = name.to_string_lossy().into_owned();
+    let settings = UsedSettings::of(name, &scene, &options, pool.current_num_threads());
     let passes_before = resumed.as_ref().map_or(0, RenderState::passes_done);
     let seconds_before = resumed.as_ref().map_or(0.0, RenderState::seconds);
     if resumed.is_some() {
@@ -57,7 +58,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         summary.interrupted(made.passes_done);
     }
     let write_started = Instant::now();
-    let metadata = settings.metadata(&scene, made.emitted_count, made.passes_done);
+    let metadata = settings.metadata(&scene, made);
     let files = [Some(arguments.output.as_path()), arguments.preview.as_deref()];
     let (film, options) = (&rendering.film, arguments.exr_options());
     // What else was asked for is written all the same.

@@ -25,8 +25,9 @@ impl<E: Extinction> PathTracer<'_, E> {
         for (index, light) in self.chosen_lights() {
             let ways = self.ways[index];
             let Some((distance, radiance)) = light.seen_along(ray) else { continue };
-            let is_background = phase_density.is_none() && distance.is_infinite();
-            if is_background && self.background == Background::Holdout {
+            let is_held_out = distance.is_infinite() && self.background == Background::Holdout;
+            let is_seen_by_camera = phase_density.is_none();
+            if is_seen_by_camera && (is_held_out || !light.is_visible()) {
                 continue;
             }
             // An even sky is the camera's to see; scattered, paths find it where they leave.

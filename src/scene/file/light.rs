@@ -97,7 +97,15 @@ pub enum LightSection {
     /// | `corner` | 3 numbers | m | required | | |
     /// | `edge_u`, `edge_v` | 3 numbers | m | required | not parallel | the edges that leave the corner |
     /// | `radiance` | number or RGB | W/(m^2 sr) | required | at least 0 | |
-    Quad { corner: DVec3, edge_u: DVec3, edge_v: DVec3, radiance: Rgb },
+    /// | `visible` | bool | | true | | whether the camera sees it |
+    Quad {
+        corner: DVec3,
+        edge_u: DVec3,
+        edge_v: DVec3,
+        radiance: Rgb,
+        #[serde(skip_serializing_if = "is_visible")]
+        visible: bool,
+    },
     /// `kind = "sphere"`: a sphere that shines outwards.
     ///
     /// | key | type | unit | default | range | meaning |
@@ -105,7 +113,14 @@ pub enum LightSection {
     /// | `center` | 3 numbers | m | required | | |
     /// | `radius` | number | m | required | above 0 | |
     /// | `radiance` | number or RGB | W/(m^2 sr) | required | at least 0 | |
-    Sphere { center: DVec3, radius: f64, radiance: Rgb },
+    /// | `visible` | bool | | true | | whether the camera sees it |
+    Sphere {
+        center: DVec3,
+        radius: f64,
+        radiance: Rgb,
+        #[serde(skip_serializing_if = "is_visible")]
+        visible: bool,
+    },
 }
 
 const KINDS: [(&str, &[&str]); 6] = [
@@ -113,8 +128,8 @@ const KINDS: [(&str, &[&str]); 6] = [
     ("spot", &["name", "kind", "position", "look_at", "intensity", "cone_angle", "falloff_angle"]),
     ("directional", &["name", "kind", "direction", "irradiance"]),
     ("environment", &["name", "kind", "radiance", "file", "scale", "rotation"]),
-    ("quad", &["name", "kind", "corner", "edge_u", "edge_v", "radiance"]),
-    ("sphere", &["name", "kind", "center", "radius", "radiance"]),
+    ("quad", &["name", "kind", "corner", "edge_u", "edge_v", "radiance", "visible"]),
+    ("sphere", &["name", "kind", "center", "radius", "radiance", "visible"]),
 ];
 
 /// Narrowest cone whose solid angle does not vanish by rounding \[degrees\].
@@ -186,15 +201,24 @@ impl LightSection {
         let is_flat = area == 0.0 || area < PARALLEL * edge_u.length() * edge_v.length();
         table.ensure("edge_v", !is_flat, "must not be zero or parallel to edge_u")?;
         let corner = table.require("corner")?;
-        Ok(Self::Quad { corner, edge_u, edge_v, radiance: read_strength(table, "radiance")? })
+        let radiance = read_strength(table, "radiance")?;
+        let visible = table.get_or("visible", true)?;
+        Ok(Self::Quad { corner, edge_u, edge_v, radiance, visible })
     }
 
     fn read_sphere(table: &Table) -> Result<Self, Problem> {
         let radius = table.require("radius")?;
         table.ensure("radius", radius > 0.0, "must be above 0")?;
         let center = table.require("center")?;
-        Ok(Self::Sphere { center, radius, radiance: read_strength(table, "radiance")? })
+        let radiance = read_strength(table, "radiance")?;
+        let visible = table.get_or("visible", true)?;
+        Ok(Self::Sphere { center, radius, radiance, visible })
     }
+}
+
+/// What a light that says nothing is, and needs no word where a scene is written or hashed.
+fn is_visible(visible: &bool) -> bool {
+    *visible
 }
 
 fn read_strength(table: &Table, key: &str) -> Result<Rgb, Problem> {

@@ -226,6 +226,9 @@ const INTENSITY: Key =
 const RADIANCE: Key =
     key("radiance", Kind::OneOrThree(POSITIVE_OR_0), "one number or RGB").unit("W/(m^2 sr)");
 
+const VISIBLE: Key =
+    key("visible", Kind::Boolean, "whether the camera sees it; it shines all the same").or("true");
+
 const NAME: Key = key(
     "name",
     Kind::Text,
@@ -311,6 +314,7 @@ const LIGHT: Section = Section {
                 key("edge_u", POINT, "an edge").unit("m").rule("not zero"),
                 key("edge_v", POINT, "the other edge").unit("m").rule("not parallel to `edge_u`"),
                 RADIANCE,
+                VISIBLE,
             ],
         ),
         kind(
@@ -321,6 +325,7 @@ const LIGHT: Section = Section {
                 key("center", POINT, "its centre").unit("m"),
                 key("radius", Kind::Number(POSITIVE), "its radius").unit("m"),
                 RADIANCE,
+                VISIBLE,
             ],
         ),
     ],

@@ -137,6 +137,9 @@ def compare(
 ) -> dict[str, NDArray[Any]]:
     """Random, stratified and Sobol photons against the truth ("analytic:NAME", or a scene): columns of a table."""
 
+def blackbody_xyz(kelvin: ArrayLike) -> NDArray[np.float64]:
+    """CIE 1931 XYZ of blackbodies [W/(m^2 sr)] by their temperatures [K]: (..., 3)."""
+
 def read_vdb(
     path: _Path, grid: str | None = None, *, max_memory: float | None = None
 ) -> tuple[NDArray[np.float32], NDArray[np.float64], tuple[int, int, int]]:

@@ -1,16 +1,15 @@
 //! The settings of a render, once for the report and once for the image's metadata.
 
-use std::path::Path;
-
-use photonvdb::film::RenderMetadata;
-use photonvdb::render::RenderOptions;
-use photonvdb::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
 use serde::Serialize;
+
+use crate::film::RenderMetadata;
+use crate::render::{RenderOptions, RenderReport};
+use crate::scene::{EstimateSettings, PhotonSettings, RenderSettings, Scene};
 
 /// Everything that determines the image, and the number of threads, which does not.
 #[derive(Clone, Debug, Serialize)]
-pub struct Settings {
-    /// Name of the scene file, without its directory.
+pub struct UsedSettings {
+    /// Name of the scene file, without its directory, or what else it is called.
     pub scene: String,
     /// Of all values and files of the scene, in hexadecimal.
     pub scene_hash: String,
@@ -32,12 +31,11 @@ pub struct Settings {
     pub render: RenderSettings,
 }
 
-impl Settings {
-    /// The settings of a scene as it is rendered.
-    pub fn of(path: &Path, scene: &Scene, options: &RenderOptions, threads: usize) -> Self {
-        let name = path.file_name().unwrap_or(path.as_os_str());
+impl UsedSettings {
+    /// The settings of a scene called `name` as it is rendered.
+    pub fn of(name: String, scene: &Scene, options: &RenderOptions, threads: usize) -> Self {
         Self {
-            scene: name.to_string_lossy().into_owned(),
+            scene: name,
             scene_hash: format!("{:016x}", scene.hash),
             passes: (options.passes != u32::MAX).then_some(options.passes),
             target_error: options.target_error,
@@ -52,18 +50,13 @@ impl Settings {
 
     /// The settings as attributes of the image, named as in the scene file (`photons.seed`). The number
     /// of threads stays out: images are the same for any.
-    pub fn metadata(
-        &self,
-        scene: &Scene,
-        photons_emitted: u64,
-        passes_done: u32,
-    ) -> RenderMetadata {
+    pub fn metadata(&self, scene: &Scene, report: &RenderReport) -> RenderMetadata {
         let mut metadata = RenderMetadata::new();
         metadata.set("version", env!("CARGO_PKG_VERSION"));
         metadata.set("scene", &self.scene);
         metadata.set("scene_hash", &self.scene_hash);
-        metadata.set("passes", passes_done);
-        metadata.set("photons_emitted", photons_emitted);
+        metadata.set("passes", report.passes_done);
+        metadata.set("photons_emitted", report.emitted_count);
         for (name, value) in scene.settings() {
             metadata.set(&name, value);
         }
