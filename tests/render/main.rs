@@ -16,3 +16,4 @@ mod layers;
 mod reference;
 mod resume;
 mod scales;
+mod visible;
