@@ -1,4 +1,5 @@
 //! A scene's photon map for a host renderer: built once, read from many threads.
+
 use crate::estimate::{Estimate, Estimator};
 use crate::map::PhotonMap;
 use crate::math::{DVec3, Random, Ray, Rgb};

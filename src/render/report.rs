@@ -94,9 +94,10 @@ pub struct RenderFigures {
 
 /// Photons over all passes.
 #[derive(Clone, Copy, Debug, Serialize)]
-#[allow(missing_docs)]
 pub struct PhotonCounts {
+    /// Sent by lights and media.
     pub emitted: u64,
+    /// Kept in photon maps: none where they are gathered in a lattice.
     pub stored: u64,
 }
 
