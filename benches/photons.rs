@@ -1,4 +1,4 @@
-//! Trace, build and gather in a fog of optical depth 2, and whole small renders.
+//! Trace, build and gather in a fog of optical depth 2; columns of shadows and rays through smoke; whole renders, of one pass and to an error of 5 %.
 //!
 //! `cargo bench --bench photons`
 
@@ -7,13 +7,14 @@ use std::path::Path;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use photonvdb::emission::{Emission, EmissionKind};
-use photonvdb::light::{Light, PointLight};
+use photonvdb::lattice::{CameraDeposit, Cells, Deposit, LatticeShape};
+use photonvdb::light::{Light, PointLight, Shadows};
 use photonvdb::map::{Columns, NearestPhotons, PhotonMap};
-use photonvdb::math::{DVec3, Ray, Rgb};
+use photonvdb::math::{DVec3, Ray, Rgb, Stream};
 use photonvdb::medium::{Bounds, Extinction, Medium, MediumExtinction, Phase, UniformExtinction};
-use photonvdb::render::{RenderOptions, Unobserved, render};
+use photonvdb::render::{LitScene, RenderOptions, Unobserved, render};
 use photonvdb::scene::{Overrides, Scene};
-use photonvdb::trace::{MapFrame, TraceSettings, TracedPhotons, trace_photons};
+use photonvdb::trace::{MapFrame, TraceSettings, TracedPhotons, trace_into, trace_photons};
 
 fn main() {
     divan::main();
@@ -33,21 +34,40 @@ fn medium() -> Medium {
     }
 }
 
-fn trace(medium: &Medium, kind: EmissionKind) -> TracedPhotons {
-    let lights =
-        [Light::Point(PointLight { position: DVec3::new(0.3, 0.4, 0.2), intensity: Rgb::ONE })];
+const LIGHT: Light =
+    Light::Point(PointLight { position: DVec3::new(0.3, 0.4, 0.2), intensity: Rgb::ONE });
+const SETTINGS: TraceSettings =
+    TraceSettings { max_order: 1000, min_stored_order: 1, max_stored: usize::MAX };
+
+fn emission<'a>(lights: &'a [Light], medium: &'a Medium, kind: EmissionKind) -> Emission<'a> {
     let opacity = |ray: &Ray| {
         medium.bounds.intersect(ray).map_or(0.0, |span| FOG.opacity(ray, span, Rgb::ONE))
     };
-    let emission = Emission::new(&lights, medium, opacity, 1.0, kind, PHOTONS, 0);
-    let settings = TraceSettings { max_order: 1000, min_stored_order: 1, max_stored: usize::MAX };
-    trace_photons(&emission, medium, &FOG, MapFrame::of(medium, None), settings, |_| ())
+    Emission::new(lights, medium, opacity, 1.0, kind, PHOTONS, 0)
+}
+
+fn trace(medium: &Medium, kind: EmissionKind) -> TracedPhotons {
+    let frame = MapFrame::of(medium, None);
+    trace_photons(&emission(&[LIGHT], medium, kind), medium, &FOG, frame, SETTINGS, |_| ())
 }
 
 #[divan::bench(args = [EmissionKind::Random, EmissionKind::Stratified, EmissionKind::Sobol])]
 fn trace_fog(bencher: Bencher, kind: EmissionKind) {
     let medium = medium();
     bencher.counter(ItemsCount::new(PHOTONS)).bench_local(|| trace(&medium, kind).photons.len());
+}
+
+/// Flights into a lattice of 32^3 cells, which takes the place of the map.
+#[divan::bench]
+fn fill_lattice(bencher: Bencher) {
+    let (medium, lights) = (medium(), [LIGHT]);
+    let emission = emission(&lights, &medium, EmissionKind::Stratified);
+    let Some(shape) = LatticeShape::new(&medium.bounds, 32) else { return };
+    bencher.counter(ItemsCount::new(PHOTONS)).bench_local(|| {
+        let empty = CameraDeposit::<_, f32>::new(&shape, &FOG, Phase::Isotropic, DVec3::Z);
+        let (filled, _) = trace_into(&emission, &medium, &FOG, SETTINGS, vec![empty], |_| ());
+        Cells::from_sums(&shape, filled.into_iter().map(Deposit::into_sums).collect()).at(DVec3::Z)
+    });
 }
 
 #[divan::bench]
@@ -81,13 +101,51 @@ fn gather_k(bencher: Bencher, k: usize) {
     });
 }
 
+fn load(path: &str, overrides: &Overrides) -> Option<Scene> {
+    Scene::load_with(&Path::new(env!("CARGO_MANIFEST_DIR")).join(path), overrides).ok()
+}
+
+/// Optical depth towards the sun, in columns through smoke.
+#[divan::bench(sample_count = 10)]
+fn columns_of_shadows(bencher: Bencher) {
+    let scene = load("examples/scenes/smoke_sun.toml", &Overrides::default());
+    let Some(Scene { lights, medium, .. }) = &scene else { return };
+    let MediumExtinction::Grid(grid) = &medium.extinction else { return };
+    bencher
+        .bench_local(|| Shadows::of(lights, medium, &**grid, 1 << 16).transmittance(0, DVec3::Y));
+}
+
+/// Rays through smoke: optical depth, single scattering, and estimates from the k nearest photons on the way.
+#[divan::bench(sample_count = 10)]
+fn march_rays(bencher: Bencher) {
+    let overrides =
+        Overrides { photons: Some(100_000), resolution: Some([64, 36]), ..Overrides::default() };
+    let Some(scene) = load("examples/scenes/smoke_sun.toml", &overrides) else { return };
+    let Ok(lit) = LitScene::prepare(&scene, &Unobserved) else { return };
+    let mut reader = lit.reader();
+    let mut random = Stream::Pixel.random(0, 0);
+    bencher.counter(ItemsCount::new(64 * 36u32)).bench_local(|| {
+        let rays = (0..64 * 36).map(|i| scene.camera.ray(f64::from(i % 64), f64::from(i / 64)));
+        rays.map(|ray| reader.radiance(&ray, f64::INFINITY, &mut random).multiple_scatter)
+            .sum::<Rgb>()
+    });
+}
+
 /// Whole renders of example scenes at 64 x 36.
 #[divan::bench(args = ["fog_point", "fog_spot", "smoke_sun"], sample_count = 10)]
 fn render_scene(bencher: Bencher, name: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenes/{name}.toml"));
     let overrides =
         Overrides { photons: Some(100_000), resolution: Some([64, 36]), ..Overrides::default() };
-    let Ok(scene) = Scene::load_with(&path, &overrides) else { return };
+    let Some(scene) = load(&format!("examples/scenes/{name}.toml"), &overrides) else { return };
     let options = RenderOptions::passes(1);
+    bencher.bench_local(|| render(&scene, &options, &Unobserved).map(|made| made.film.width));
+}
+
+/// Whole renders at 128 x 128 until the estimated error is 5 %.
+#[divan::bench(args = ["fog_point", "fog_spot", "smoke_sun"], sample_count = 10)]
+fn render_to_error(bencher: Bencher, name: &str) {
+    let path = format!("tests/scenes/{name}.toml");
+    let Some(scene) = load(&path, &Overrides::default()) else { return };
+    let options = RenderOptions { target_error: Some(0.05), ..RenderOptions::passes(1000) };
     bencher.bench_local(|| render(&scene, &options, &Unobserved).map(|made| made.film.width));
 }
