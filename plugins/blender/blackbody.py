@@ -6,14 +6,16 @@ Of intensity b, tint c and a temperature of T kelvin, Cycles adds an emissivity 
 
 where sigma is Stefan and Boltzmann's constant and color(T) the linear Rec.709 colour of a blackbody of luminance 1 (that of 800 K
 below, of 12000 K above). Channels outside of the gamut are 0 here, which Cycles lets be negative. A flame has one colour and a grid of
-numbers: three volumes, of red, green and blue, make up any colour. Blender interpolates temperatures, the library emissivities, which rise
-more steeply: they are kept in voxels of half the size.
+numbers: three volumes, of red, green and blue, make up any colour. Blender 4 interpolates temperatures, the library emissivities, which
+rise more steeply: they are kept in voxels of half the size. Blender 5 takes one of the voxels around at random, whose mean is that of
+emissivities.
 """
 
 import os
 from functools import lru_cache
 from math import pi
 
+import bpy
 import numpy as np
 import photonvdb
 
@@ -30,7 +32,8 @@ def media(blackbody, place, density_change, directory):
     """Media of a file's transform whose flames are a blackbody: (intensity, tint, kelvin where the grid is 1, grid)."""
     intensity, tint, kelvin, grid = blackbody
     values, index_to_world, origin = photonvdb.read_vdb(place["file"], grid)
-    values, index_to_world, origin = refined(values, index_to_world, origin)
+    if bpy.app.version < (5, 0):
+        values, index_to_world, origin = refined(values, index_to_world, origin)
     emissivity = emissivities(np.maximum(values, 0.0) * kelvin, intensity)
     found = []
     for channel, share in enumerate(tint):

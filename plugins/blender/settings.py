@@ -4,11 +4,6 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 
-def choices(*entries):
-    """Items of an enumeration by (value, what it is called, what it is)."""
-    return [(value, name, text) for value, name, text in entries]
-
-
 class PhotonvdbSettings(bpy.types.PropertyGroup):
     """How a scene is rendered."""
 
@@ -22,7 +17,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     emission: EnumProperty(
         name="Emission",
         description="How photons are sampled at the lights",
-        items=choices(
+        items=(
             ("stratified", "Stratified", "Random within strata"),
             ("sobol", "Sobol", "Scrambled Sobol points"),
             ("random", "Random", "Independent"),
@@ -36,7 +31,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     gather: EnumProperty(
         name="Gather",
         description="How light scattered twice or more is gathered from photons",
-        items=choices(
+        items=(
             ("auto", "Automatic", "Bounced paths where light scatters many times, else a lattice"),
             ("lattice", "Lattice", "The lengths that photons fly in cells"),
             ("knn", "Nearest photons", "The k photons nearest to a point: the classical photon map"),
@@ -48,7 +43,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     divisor: EnumProperty(
         name="Divisor",
         description="What the k nearest photons count as",
-        items=choices(
+        items=(
             ("k", "k", "All of them: reads too high by 1 / (k - 1)"),
             ("k-1", "k - 1", "Exact for random photons"),
             ("k-1/2", "k - 1/2", "Half of the k-th"),
@@ -60,7 +55,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     filter: EnumProperty(
         name="Filter",
         description="Whether multiple scattering is smoothed from pixel to pixel",
-        items=choices(
+        items=(
             ("auto", "Automatic", "With a target error, a time budget or bounced paths"),
             ("on", "On", "As far as the noise taken away exceeds the measured bias"),
             ("off", "Off", "Never"),
@@ -70,7 +65,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     limit: EnumProperty(
         name="Until",
         description="When a render ends",
-        items=choices(
+        items=(
             ("PASSES", "Passes", "So many passes were made"),
             ("ERROR", "Target error", "The estimated error is below the target"),
             ("TIME", "Time budget", "The time is over"),
@@ -92,7 +87,7 @@ class PhotonvdbSettings(bpy.types.PropertyGroup):
     unsupported: EnumProperty(
         name="Unsupported",
         description="What becomes of objects that photonvdb cannot render, such as surfaces",
-        items=choices(
+        items=(
             ("REFUSE", "Refuse", "Do not render, and name the first one"),
             ("LEAVE_OUT", "Leave out", "Render without them, and name them in warnings"),
         ),
