@@ -6,7 +6,7 @@
 //! w. That is exact for any w as cells shrink.
 //!
 //! Points that are spread evenly along a ray hardly ever meet the peak. Nearer than r to a lamp they count by a share d / r, and what is left,
-//! 1 - d / r, belongs to the lamp and is looked for by angles seen from it.
+//! 1 - d / r, belongs to the lamp and is looked for apart, by the inverse of the distance to it.
 
 use crate::light::{Light, LightChoice};
 use crate::math::{DVec3, Ray, Span, mean_channel};
@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// How far peaks reach \[cells\]: beyond, they are nearly straight over a cell.
 const REACH: f64 = 3.0;
 
-/// How near to a lamp light is looked for by angles seen from it, too \[cells\].
+/// How near to a lamp light is looked for by the distance to it, too \[cells\].
 const NEAR: f64 = 1.0;
 
 /// How near to a lamp the peak goes on \[cells\]: it has no bound.

@@ -3,7 +3,8 @@
 //! Two densities cover all cases. By *transmittance*: p(t) = sigma_t T(t) / (1 - T(end)), inverted from the ray's
 //! profile, follows what the camera sees (for a chromatic medium, the mean of its channels' densities).
 //! *Equi-angular* (Kulla and Fajardo 2012): p(t) = D / (dtheta (D^2 + (t - delta)^2)) follows the inverse square of the
-//! distance to a light at distance D from the ray, and removes its peak.
+//! distance to a light at distance D from the ray, and removes its peak. The peak of what that light leaves to scatter again is a
+//! lower one: p(t) = 1 / (A sqrt(D^2 + (t - delta)^2)) follows the inverse distance.
 
 use crate::math::{DVec3, Ray, Rgb, Span, exp};
 use crate::medium::RayProfile;
@@ -115,11 +116,7 @@ pub struct EquiAngular {
 impl EquiAngular {
     /// Sampling of the part `span` of a ray about `position`.
     pub fn new(ray: &Ray, span: Span, position: DVec3) -> Self {
-        let to_position = position - ray.origin;
-        let delta = to_position.dot(ray.direction);
-        // A ray through the light itself would see it without bound: the floor is far below any pixel.
-        let floor = 1e-12 * to_position.length() + f64::MIN_POSITIVE;
-        let offset = (to_position - ray.direction * delta).length().max(floor);
+        let (delta, offset) = nearest(ray, position);
         let (a, b) = (span.start - delta, span.end - delta);
         let first = a.atan2(offset);
         // One arctangent of the difference, which does not cancel for a far light.
@@ -151,6 +148,46 @@ impl EquiAngular {
         let along = distance - self.delta;
         self.offset / (self.angle * (self.offset * self.offset + along * along))
     }
+}
+
+/// Sampling by the inverse of the distance to a position.
+pub struct InverseDistance {
+    span: Span,
+    /// Distance of the ray's nearest point to the position.
+    delta: f64,
+    /// Distance of the position from the ray \[m\].
+    offset: f64,
+    /// asinh((t - delta) / offset) of the span's start, and how much more it is at its end.
+    first: f64,
+    width: f64,
+}
+
+impl InverseDistance {
+    /// Sampling of the part `span` of a ray about `position`, which is no farther than some lengths of the span.
+    pub fn new(ray: &Ray, span: Span, position: DVec3) -> Self {
+        let (delta, offset) = nearest(ray, position);
+        let [first, last] = [span.start, span.end].map(|end| ((end - delta) / offset).asinh());
+        Self { span, delta, offset, first, width: last - first }
+    }
+
+    /// The distance at quantile `u`.
+    pub fn sample_distance(&self, u: f64) -> f64 {
+        let distance = self.delta + self.offset * (self.first + u * self.width).sinh();
+        distance.clamp(self.span.start, self.span.end)
+    }
+
+    /// Density of [`Self::sample_distance`] \[1/m\].
+    pub fn pdf_distance(&self, distance: f64) -> f64 {
+        1.0 / (self.width * self.offset.hypot(distance - self.delta))
+    }
+}
+
+/// How far along a ray it is nearest to a position, and how near. A ray through a light itself would see it without bound: the floor is far below any pixel.
+fn nearest(ray: &Ray, position: DVec3) -> (f64, f64) {
+    let to_position = position - ray.origin;
+    let delta = to_position.dot(ray.direction);
+    let floor = 1e-12 * to_position.length() + f64::MIN_POSITIVE;
+    (delta, (to_position - ray.direction * delta).length().max(floor))
 }
 
 #[cfg(test)]
@@ -196,6 +233,26 @@ mod tests {
                 let middle = sampling.sample_distance(u);
                 let ratio = density / sampling.pdf_distance(middle);
                 assert!((ratio - 1.0).abs() < 2e-3, "{position} at {u}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn inverse_distances_follow_their_density() {
+        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
+        let span = Span::new(0.5, 3.0);
+        for (x, z, h) in [(0.3, 1.0, 1e-5), (1e-7, 2.0, 1e-5), (0.0, 2.0, 1e-7), (2.0, 0.1, 1e-5)] {
+            let sampling = InverseDistance::new(&ray, span, DVec3::new(x, 0.0, z));
+            assert!((sampling.sample_distance(0.0) - span.start).abs() < 1e-9, "{x}");
+            assert!((sampling.sample_distance(1.0) - span.end).abs() < 1e-9, "{x}");
+            for step in 1..50 {
+                let u = f64::from(step) / 50.0;
+                let (low, high) =
+                    (sampling.sample_distance(u - h), sampling.sample_distance(u + h));
+                let density = 2.0 * h / (high - low);
+                let ratio = density / sampling.pdf_distance(sampling.sample_distance(u));
+                // Where a ray all but meets the position distances are rounded.
+                assert!((ratio - 1.0).abs() < 2e-3 || high - low < 1e-12, "{x} at {u}: {ratio}");
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::lattice::Lamps;
 use crate::light::{Light, LightChoice, Shadows, transmittance_to};
 use crate::math::{Random, Ray, Rgb, Span, exp, uniform};
 use crate::medium::{Extinction, RayProfile};
-use crate::render::distances::{ByTransmittance, EquiAngular, even_quantile};
+use crate::render::distances::{ByTransmittance, InverseDistance, even_quantile};
 use crate::render::emitted_light::emitted_light;
 use crate::render::photon_query::PhotonQuery;
 use crate::render::ray_depths::ray_depths;
@@ -266,7 +266,7 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         }
     }
 
-    /// Queries for the lamps' own shares of the light, at equal angles seen from each that the ray passes near.
+    /// Queries for the lamps' own shares of the light, at distances that follow the peak of each that the ray passes near.
     fn push_queries_near(
         &self,
         lamps: &Lamps,
@@ -276,11 +276,11 @@ impl<'a, E: Extinction, S: ScatteredLight> Reader<'a, E, S> {
         queries: &mut Vec<PhotonQuery>,
     ) {
         for (lamp, center, near) in lamps.near(ray, span) {
-            let equi_angular = EquiAngular::new(ray, near, center);
+            let by_distance = InverseDistance::new(ray, near, center);
             for stratum in 0..samples {
-                let distance = equi_angular.sample_distance(even_quantile(stratum, phase, samples));
+                let distance = by_distance.sample_distance(even_quantile(stratum, phase, samples));
                 let place = ray.at(distance);
-                let density = samples as f64 * equi_angular.pdf_distance(distance);
+                let density = samples as f64 * by_distance.pdf_distance(distance);
                 let share = lamps.own_share(lamp, place) / density;
                 let weight = exp(-self.profile.optical_depth(distance))
                     * self.extinction.sigma_t(place)
